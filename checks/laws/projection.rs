@@ -26,7 +26,7 @@ fn projected(tolerance: f32) -> (Volume, f32, strandline_sim::PressureReport) {
     let end = Pose { translation: vec3(0.002, 0.0, 0.0), ..Pose::IDENTITY };
     let obstacles = Obstacles::new(&colliders, BodyFrame::REST, end.into(), 0.01);
     splat(&mut volume, &cloud.positions, &cloud.velocities, &cloud.mass);
-    mark(&mut volume, &obstacles, None);
+    mark(&mut volume, &obstacles, None, None);
     let before = volume.largest_divergence();
     let report = solve_pressure(&mut volume);
     (volume, before, report)

@@ -222,7 +222,7 @@ fn planes_of_points_tell_the_same_cells() {
     let kinds = |with_planes: bool| {
         let mut volume = Volume::new(&VolumeSettings::default(), bust.guides.strand_count(), POINTS);
         splat(&mut volume, &state.positions, &state.velocities, &mass);
-        mark(&mut volume, &obstacles, with_planes.then_some((&state.positions[..], state.contacts())));
+        mark(&mut volume, &obstacles, with_planes.then_some((&state.positions[..], state.contacts())), None);
         (0..volume.grid.cell_count()).map(|cell| volume.kind(cell)).collect::<Vec<_>>()
     };
     let expected = kinds(false);

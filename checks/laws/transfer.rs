@@ -100,7 +100,7 @@ impl Cloud {
                 let mut volume = Volume::new(&settings, self.strands, POINTS);
                 let obstacles = Obstacles::new(solids, BodyFrame::REST, end.into(), time_step);
                 splat(&mut volume, &self.positions, &self.velocities, &self.mass);
-                mark(&mut volume, &obstacles, None);
+                mark(&mut volume, &obstacles, None, None);
                 solve_pressure(&mut volume);
                 self.gather(&volume, time_step);
             }
@@ -375,7 +375,7 @@ fn edge_cases_do_no_harm() {
                 let mut cloud = Cloud::new(&points);
                 let mut volume = volume(&cloud, cells, 0.95);
                 splat(&mut volume, &cloud.positions, &cloud.velocities, &cloud.mass);
-                mark(&mut volume, obstacles, None);
+                mark(&mut volume, obstacles, None, None);
                 let report = solve_pressure(&mut volume);
                 cloud.gather(&volume, 1.0 / 60.0);
                 assert!(report.relative_residual <= 1e-5 || report.iterations == 200, "{report:?}");

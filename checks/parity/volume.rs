@@ -8,7 +8,7 @@ use strandline_sim::cpu::{
     solve_pressure::solve_pressure, splat::splat,
 };
 use strandline_sim::gpu::{GpuRunner, Gradient, Probe, Spread};
-use strandline_sim::{Model, Preconditioner, Stage, State, VolumeSettings};
+use strandline_sim::{Model, Preconditioner, Stage, State, VolumeMethod, VolumeSettings};
 
 use crate::heads::{Head, Moving, apart, drive, heads, obstacles};
 
@@ -102,7 +102,7 @@ fn mark_tells_the_same_cells_and_walls() {
         let mut probe = state.probe(&gpu_runner);
         probe.run(&drive(6), &[Stage::Splat]).unwrap();
         probe.run(&drive(6), &[Stage::Mark]).unwrap();
-        mark(&mut volume, &obstacles(&model, &state), None);
+        mark(&mut volume, &obstacles(&model, &state), None, None);
         let kinds = probe.kinds().unwrap();
         for (cell, kind) in kinds.iter().enumerate() {
             assert_eq!(*kind, volume.kind(cell), "{}, cell {cell}", head.name);
@@ -114,11 +114,35 @@ fn mark_tells_the_same_cells_and_walls() {
     }
 }
 
+#[test]
+fn a_one_sided_volume_packs_the_same_cells_and_moves_hair_alike() {
+    let Some(gpu) = gpu() else { return };
+    for mut head in heads() {
+        head.settings.volume.method = VolumeMethod::OneSided;
+        let (model, state, mut volume) = constrained(&head);
+        splat_cpu(&model, &state, &mut volume);
+        let gpu_runner = head.gpu_runner(&gpu);
+        let mut probe = state.probe(&gpu_runner);
+        probe.run(&drive(6), &[Stage::Splat]).unwrap();
+        probe.run(&drive(6), &[Stage::Mark]).unwrap();
+        let packing = model.rest_density().map(|density| (density, model.settings().time_step));
+        mark(&mut volume, &obstacles(&model, &state), None, packing);
+        let (kinds, occupied) = (probe.kinds().unwrap(), volume.sort.cells().len());
+        // A density at the threshold falls to either side by its rounding.
+        let other = kinds.iter().enumerate().filter(|(cell, kind)| **kind != volume.kind(*cell)).count();
+        assert!(100 * other <= occupied, "{}: {other} of {occupied} cells", head.name);
+        assert!(volume.fluid().len() < occupied, "{}: all cells are packed", head.name);
+        let [velocity, change] = faces_apart(&volume, &probe.faces().unwrap());
+        assert!(velocity < 1e-4 * fastest(&state), "{}: {velocity}, {change}", head.name);
+        assert!(other > 0 || change < 1e-4 * fastest(&state), "{}: {change}", head.name);
+    }
+}
+
 /// A volume with its walls, ready to be solved.
 fn marked(head: &Head) -> (Model, Moving, Volume) {
     let (model, state, mut volume) = constrained(head);
     splat_cpu(&model, &state, &mut volume);
-    mark(&mut volume, &obstacles(&model, &state), None);
+    mark(&mut volume, &obstacles(&model, &state), None, None);
     (model, state, volume)
 }
 

@@ -66,8 +66,8 @@ impl Head {
             ..PictureSettings::sized(self.size as u32, self.size as u32)
         };
         let mut look = Look::named(preset);
-        // On a software adapter each takes part of a second of processors, and the last ones change a picture by 1%.
-        look.fibre.chiang.scatterings = on.short(look.fibre.chiang.scatterings, 8);
+        // On a software adapter each takes part of a second of processors: four leave blonde hair its rim.
+        look.fibre.chiang.scatterings = on.short(look.fibre.chiang.scatterings, 4);
         let input = FrameInput {
             positions: self.guides.positions(),
             body: &BodyFrame::REST,

@@ -9,7 +9,7 @@ mod rig;
 use std::sync::OnceLock;
 
 pub use grooms::{ponytail, reference, sintel};
-pub use rig::{On, Rig};
+pub use rig::{On, Rig, in_full};
 use strandline_gpu::Gpu;
 
 /// The adapter that the checks of the GPU backend run on, any that there is; they share its device.

@@ -25,8 +25,7 @@ impl On {
     /// As [`On::either`], but a software adapter has the full number too where `STRANDLINE_FULL` is 1, as in
     /// `cargo xtask long`.
     pub fn short<T>(&self, full: T, software: T) -> T {
-        let in_full = std::env::var_os("STRANDLINE_FULL").is_some_and(|value| value == "1");
-        if in_full { full } else { self.either(full, software) }
+        if in_full() { full } else { self.either(full, software) }
     }
 
     /// One bound for the CPU and software adapters, and one for hardware, whose arithmetic is not known to the bit.
@@ -36,6 +35,11 @@ impl On {
             _ => exact,
         }
     }
+}
+
+/// True in `cargo xtask long`, which sets `STRANDLINE_FULL` to 1: laws that are cut short elsewhere are whole.
+pub fn in_full() -> bool {
+    std::env::var_os("STRANDLINE_FULL").is_some_and(|value| value == "1")
 }
 
 /// A simulator on a backend that never fails.

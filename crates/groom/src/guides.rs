@@ -1,4 +1,4 @@
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::Vec3;
 use strandline_base::par::prelude::*;
@@ -26,6 +26,8 @@ pub struct Guides {
     spreads: Option<Vec<f32>>,
     groups: Option<Vec<u32>>,
     group_names: BTreeMap<u32, String>,
+    /// Points that ties hold, as (strand, point).
+    held: BTreeSet<(u32, u32)>,
 }
 
 impl Guides {
@@ -85,6 +87,7 @@ impl Guides {
             spreads: None,
             groups: groom.groups.clone(),
             group_names: groom.group_names.clone(),
+            held: BTreeSet::new(),
         })
     }
 
@@ -116,6 +119,21 @@ impl Guides {
     pub fn position(&self, strand: usize, point: usize) -> Vec3 {
         let (index, lane) = lane_place(strand, point, self.points_per_strand);
         self.positions[index].get(lane)
+    }
+
+    /// True if a tie holds a point of a strand.
+    pub fn is_held(&self, strand: usize, point: usize) -> bool {
+        !self.held.is_empty() && self.held.contains(&(strand as u32, point as u32))
+    }
+
+    /// Number of points that ties hold.
+    pub fn held_count(&self) -> usize {
+        self.held.len()
+    }
+
+    /// Replaces the points that ties hold, as (strand, point).
+    pub(crate) fn set_held(&mut self, held: BTreeSet<(u32, u32)>) {
+        self.held = held;
     }
 
     /// Unit skin normals at the roots, head space, shape `[strand]`.

@@ -17,6 +17,7 @@ mod resampled;
 mod rest;
 mod selected;
 mod style;
+mod ties;
 mod unlike;
 
 pub mod format;
@@ -30,3 +31,4 @@ pub use outside::Outside;
 pub use rest::RestShape;
 pub use strandline_base::{LANES, Lanes, Vec3Lanes, block_count};
 pub use style::{Style, StyleSettings};
+pub use ties::Tie;

@@ -48,7 +48,9 @@ pub use currents::{Currents, Eddy, Source};
 pub use error::SimError;
 pub use model::Model;
 pub use report::{Drift, PressureReport, RodReport, StepReport, Stiffening};
-pub use settings::{Drag, Preconditioner, Settings, StrandMethod, StrandSettings, VolumeSettings};
+pub use settings::{
+    Drag, Preconditioner, Settings, StrandMethod, StrandSettings, VolumeMethod, VolumeSettings,
+};
 pub use simulator::Simulator;
 pub use state::{Drive, MOST_SPIN, State};
 pub use step::Stage;

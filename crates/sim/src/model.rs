@@ -6,6 +6,7 @@ use strandline_groom::{Guides, LANES, Lanes, RestShape, Vec3Lanes};
 use wide::f32x8;
 
 use crate::at_rest::{by_lane, check_rest, clearance, directions, velocities};
+use crate::cells::packing::rest_density;
 use crate::strands::rods::hairs::Hairs;
 use crate::strands::rods::model::{Rods, RodsAtRest};
 use crate::strands::rods::other_lengths::Lengthened;
@@ -41,6 +42,8 @@ pub struct Model {
     pub(crate) velocities: Vec<Vec3Lanes>,
     /// None with another strand solver.
     pub(crate) rods: Option<Rods>,
+    /// Density \[kg/m^3\] around each point at rest; empty without a one-sided volume.
+    rest_density: Vec<Lanes>,
 }
 
 /// Masses at the mass per length that a model was compiled with.
@@ -58,13 +61,14 @@ impl Model {
     /// Points of a strand that the head carries, so that hair leaves the skin in its own direction.
     pub const ROOTED_POINTS: usize = 2;
 
-    /// Compiles a model of hair: the first two points of every strand are rooted in the head.
+    /// Compiles a model of hair: the head carries the first two points of every strand and those that ties hold.
     ///
     /// # Errors
     /// A setting outside its range; more memory than may be taken.
     pub fn new(guides: &Guides, settings: &Settings, colliders: Vec<Collider>) -> Result<Self, SimError> {
         let rest = RestShape::new(guides, settings.line_density());
-        Self::with_rest(guides, rest, |_, point| point < Self::ROOTED_POINTS, settings, colliders)
+        let rooted = |strand, point| point < Self::ROOTED_POINTS || guides.is_held(strand, point);
+        Self::with_rest(guides, rest, rooted, settings, colliders)
     }
 
     /// Compiles a model of strands of any mass that are held at any points: ropes, chains.
@@ -118,9 +122,11 @@ impl Model {
             velocities: velocities(guides, &rooted),
             hairs,
             rods: None,
+            rest_density: Vec::new(),
         };
         model.weigh();
         model.compile_rods();
+        model.pack();
         Ok(model)
     }
 
@@ -161,6 +167,27 @@ impl Model {
             StrandMethod::Constrain => None,
             StrandMethod::Rods => Some(Rods::new(&self.rods_at_rest(), &self.hairs, settings.rods.rest)),
         };
+    }
+
+    /// Measures how dense hair is at rest, where a one-sided volume asks for it.
+    fn pack(&mut self) {
+        let volume = &self.settings.volume;
+        self.rest_density = if volume.enabled && volume.is_one_sided() {
+            rest_density(
+                volume.cells,
+                self.strand_count,
+                self.points_per_strand,
+                &self.positions,
+                &self.rest.mass,
+            )
+        } else {
+            Vec::new()
+        };
+    }
+
+    /// Density \[kg/m^3\] around each point at rest, shape `[block][point]` of lanes; none without a one-sided volume.
+    pub fn rest_density(&self) -> Option<&[Lanes]> {
+        (!self.rest_density.is_empty()).then_some(&self.rest_density)
     }
 
     fn rods_at_rest(&self) -> RodsAtRest<'_> {
@@ -224,6 +251,9 @@ impl Model {
         }
         if change.rest_shape || change.masses || change.buffers {
             self.compile_rods();
+        }
+        if change.stages || change.masses || change.buffers {
+            self.pack();
         }
         Ok(())
     }

@@ -186,12 +186,14 @@ settings! {
     pub struct VolumeSettings: Copy {
         /// Keeps the density of hair: pressed hair spreads again. Single locks still pass through each other.
         enabled: bool = true, invalidates stages;
+        /// Flow that the volume holds back.
+        method: VolumeMethod = VolumeMethod::default(), invalidates stages;
         /// Cells along x, y and z.
         cells: [u32; 3] = [32; 3], in [4, 512], slider [8, 128],
             more "a finer volume at a cost that grows with the cells that hold hair", invalidates stages;
         /// FLIP share of the velocity update in a step of 1/60 s, 0 is PIC and 1 is FLIP
         /// [Chen2011 eq. 5]. A step of another length takes as much of PIC in a second, and no more than
-        /// all.
+        /// all. In a one-sided volume of packed hair alone.
         flip_share: f32 = 0.95, in [0.0, 1.0], more "livelier hair, with more noise";
         /// Relative residual at which the pressure solve stops.
         tolerance: f32 = 1e-5, in [1e-12, 1.0], more "a faster, less exact solve";
@@ -218,6 +220,23 @@ impl VolumeSettings {
     pub(crate) fn pressure_share_in(time_step: f32) -> f32 {
         (60.0 * time_step).min(1.0)
     }
+
+    /// True if pressure acts against compression alone.
+    pub(crate) fn is_one_sided(&self) -> bool {
+        self.method == VolumeMethod::OneSided
+    }
+}
+
+choices! {
+    /// Flow that a volume holds back.
+    pub enum VolumeMethod as "simulation.volume.method" {
+        /// Density, by pressure where hair is denser than it rests or is about to be: hair that parts, shears or swings
+        /// without being compressed moves as without a volume \[Narain2009\].
+        OneSided = "one_sided",
+        /// Volume, everywhere that hair is, with FLIP and PIC [Chen2011 §4.2, McAdams2009].
+        Incompressible = "incompressible",
+    }
+    default Incompressible
 }
 
 choices! {

@@ -43,7 +43,7 @@ pub mod settings {
 
     pub use crate::groom::StyleSettings;
     pub use crate::sim::{
-        Drag, Preconditioner, StrandMethod, StrandSettings, VolumeSettings, constrain, rods,
+        Drag, Preconditioner, StrandMethod, StrandSettings, VolumeMethod, VolumeSettings, constrain, rods,
     };
 }
 

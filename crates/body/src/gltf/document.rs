@@ -34,6 +34,7 @@ pub(super) fn document(bytes: &[u8]) -> Result<Parts, Refusal> {
     check_required(&value)?;
     let clips = Clips::new(value.get_mut("animations").map(Value::take));
     let looks = Looks::take(&mut value);
+    hide(&mut value);
     keep_shape(&mut value);
     let root: Root = deserialize::from_value(value).map_err(unread)?;
     check_positions(&root)?;
@@ -67,10 +68,48 @@ fn check_required(root: &Value) -> Result<(), Refusal> {
 
 /// Tells extensions that a reader of shapes knows, or that leave the shape at rest alone.
 fn is_needless(name: &str) -> bool {
-    const KNOWN: [&str; 2] = ["KHR_mesh_quantization", "VRM"];
-    const BESIDE: [&str; 7] =
-        ["_materials_", "_texture_", "_lights_", "_animation_", "_audio", "_xmp", "_physics"];
+    const KNOWN: [&str; 3] = ["KHR_mesh_quantization", VISIBILITY, "VRM"];
+    const BESIDE: [&str; 12] = [
+        "_materials_",
+        "_texture_",
+        "_lights_",
+        "_animation_",
+        "_audio",
+        "_xmp",
+        "_physics",
+        "_mesh_features",
+        "_structural_metadata",
+        "_node_selectability",
+        "_node_hoverability",
+        "_interactivity",
+    ];
     KNOWN.contains(&name) || name.starts_with("VRMC_") || BESIDE.iter().any(|part| name.contains(part))
+}
+
+/// The extension by which a node hides itself and all below it.
+const VISIBILITY: &str = "KHR_node_visibility";
+
+/// Takes the meshes of hidden nodes and of all below them away. The nodes stay: they may be joints.
+fn hide(root: &mut Value) {
+    let mut nodes = list(root.get_mut("nodes")).collect::<Vec<_>>();
+    let says_hidden = |node: &Value| {
+        let said = node.get("extensions").and_then(|all| all.get(VISIBILITY)?.get("visible"));
+        said.and_then(Value::as_bool) == Some(false)
+    };
+    let mut waiting: Vec<usize> = (0..nodes.len()).filter(|&index| says_hidden(nodes[index])).collect();
+    let mut hidden = vec![false; nodes.len()];
+    while let Some(index) = waiting.pop() {
+        if hidden.get(index).is_none_or(|&seen| seen) {
+            continue;
+        }
+        hidden[index] = true;
+        let children = nodes[index].get("children").and_then(Value::as_array);
+        let below = children.into_iter().flatten().filter_map(Value::as_u64);
+        waiting.extend(below.filter_map(|child| usize::try_from(child).ok()));
+        if let Some(node) = nodes[index].as_object_mut() {
+            node.retain(|name, _| name != "mesh" && name != "skin");
+        }
+    }
 }
 
 /// Leaves out all that does not change the shape, names of materials apart.

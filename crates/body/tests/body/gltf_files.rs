@@ -73,6 +73,7 @@ fn extensions_of_looks_are_no_obstacle_and_others_are_named() {
         r#""KHR_materials_unlit", "KHR_texture_transform""#,
         r#""KHR_materials_transmission", "KHR_materials_clearcoat", "EXT_texture_webp", "KHR_texture_basisu""#,
         r#""KHR_lights_punctual", "KHR_animation_pointer", "VRM", "VRMC_springBone", "KHR_xmp_json_ld""#,
+        r#""EXT_mesh_features", "EXT_structural_metadata", "KHR_node_visibility", "KHR_interactivity""#,
     ] {
         check_cube(&load_bytes("cube.glb", &required(names).bytes()).unwrap(), Vec3::ZERO, 1.0);
     }
@@ -119,6 +120,29 @@ fn the_scene_of_the_file_alone_is_read() {
     check_cube(&load(r#""extras": 0"#), Vec3::new(5.0, 0.0, 0.0), 20.0);
     let twice = Glb::new("{}").replace(scenes, r#""scenes": [{"nodes": [0, 0]}]"#);
     assert!(refused("cube.glb", &twice.bytes()).contains("node 0 twice in a scene"));
+}
+
+#[test]
+fn hidden_nodes_and_what_is_below_them_are_not_drawn() {
+    let hidden = |visible: &str| {
+        let node = format!(
+            r#""skin": 0}}, {{"children": [3], "extensions": {{"KHR_node_visibility": {{"visible": {visible}}}}}}},
+               {{"mesh": 0, "scale": [20, 20, 20], "translation": [5, 0, 0]}}]"#
+        );
+        let file = Glb::new("{}")
+            .replace(r#""scenes": [{"nodes": [0]}]"#, r#""scenes": [{"nodes": [0, 2]}]"#)
+            .replace(r#""skin": 0}]"#, &node)
+            .replace(r#""scene": 0"#, r#""extensionsRequired": ["KHR_node_visibility"], "scene": 0"#);
+        load_bytes("cube.glb", &file.bytes()).unwrap()
+    };
+    check_cube(&hidden("false"), Vec3::ZERO, 1.0);
+    for visible in ["true", "1", "null"] {
+        assert_eq!(hidden(visible).positions.len(), 16, "{visible}");
+    }
+    // A circle of hidden nodes ends.
+    let circle =
+        r#"{"nodes": [{"children": [0], "extensions": {"KHR_node_visibility": {"visible": false}}}]}"#;
+    assert!(load_bytes("circle.gltf", circle.as_bytes()).is_err());
 }
 
 #[test]

@@ -3,6 +3,7 @@
 pub mod grid;
 mod kind;
 mod lattice;
+pub(crate) mod packing;
 pub(crate) mod set;
 pub mod sort;
 

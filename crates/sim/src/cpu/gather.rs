@@ -7,12 +7,13 @@ use wide::f32x8;
 use super::faces::{Faces, Stencil};
 use super::volume::Volume;
 use crate::VolumeSettings;
-use crate::cells::NO_CELL;
+use crate::cells::{Kind, NO_CELL};
 use strandline_base::vec3x8::Vec3x8;
 
 /// Updates the velocities of free points: `a` times (the velocity plus its change on the faces)
 /// plus (1 - `a`) times the velocity on the faces, with `a` the FLIP share of a step
-/// of `time_step` \[s\] [Chen2011 eq. 5]. A short step takes a part of the change.
+/// of `time_step` \[s\] [Chen2011 eq. 5]. A short step takes a part of the change. In a one-sided volume `a` is 1 but in
+/// packed cells, where hair rubs.
 ///
 /// Every face in the stencil of a point carries weight, at least its own. Points outside the box
 /// and those that the head moves, whose inverse mass is 0, keep their velocities. Shapes are
@@ -26,6 +27,7 @@ pub fn gather(
 ) {
     let points = volume.points_per_strand;
     let (share, strides) = (volume.settings.flip_share_in(time_step), volume.grid.strides());
+    let is_one_sided = volume.settings.is_one_sided();
     let taken_share = VolumeSettings::pressure_share_in(time_step);
     velocities
         .par_chunks_mut(points)
@@ -48,7 +50,9 @@ pub fn gather(
                     let change = glam::Vec3::new(x_change, y_change, z_change);
                     let flip = old + change * taken_share;
                     let pic = glam::Vec3::new(x, y, z) - change * (1.0 - taken_share);
-                    velocity.set(lane, share * flip + (1.0 - share) * pic);
+                    let smoothed = share * flip + (1.0 - share) * pic;
+                    let is_loose = is_one_sided && volume.kind(cell) != Kind::Fluid;
+                    velocity.set(lane, if is_loose { flip } else { smoothed });
                 }
             }
         });

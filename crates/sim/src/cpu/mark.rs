@@ -3,7 +3,7 @@
 use glam::Vec3;
 use strandline_base::par::prelude::*;
 use strandline_body::PosedSkin;
-use strandline_groom::{LANES, Vec3Lanes};
+use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
 use super::volume::Volume;
 use crate::cells::Grid;
@@ -24,7 +24,15 @@ const ROUNDED: f32 = 1e-6;
 /// that hair from the volume. Of the other cells only neighbours of fluid ones matter; they are
 /// solid where their middle is inside. Signed distances are looked up for these alone; under a skin that moves by itself the
 /// planes of the points, where they are given with the positions \[m\], tell most of them.
-pub fn mark(volume: &mut Volume, obstacles: &Obstacles, planes: Option<(&[Vec3Lanes], &Contacts)>) {
+///
+/// In a one-sided volume, where `packing` gives the density \[kg/m^3\] of each point at rest and the step \[s\], cells that are
+/// not packed are air, and walls hold what flows into them alone.
+pub fn mark(
+    volume: &mut Volume,
+    obstacles: &Obstacles,
+    planes: Option<(&[Vec3Lanes], &Contacts)>,
+    packing: Option<(&[Lanes], f32)>,
+) {
     for &cell in &volume.marked {
         volume.kinds[cell as usize] = Kind::Air;
     }
@@ -39,6 +47,9 @@ pub fn mark(volume: &mut Volume, obstacles: &Obstacles, planes: Option<(&[Vec3La
     let planes = planes.filter(|_| obstacles.has_moving_skin());
     let known = planes.map(|planes| known_by_points(volume, obstacles, planes));
     classify(volume, obstacles, known);
+    if let Some((at_rest, time_step)) = packing {
+        volume.loosen(at_rest, time_step);
+    }
     volume.fluid.clear();
     let cells = volume.sort.cells().iter();
     volume.fluid.extend(cells.filter(|&&cell| volume.kinds[cell as usize] == Kind::Fluid));
@@ -151,10 +162,14 @@ fn carry_walls(volume: &mut Volume, obstacles: &Obstacles) {
         walls.iter().any(Option::is_some).then_some((cell, walls))
     };
     let beside: Vec<_> = volume.fluid.par_iter().with_min_len(256).filter_map(around).collect();
+    let holds_all = !volume.settings.is_one_sided();
     for (cell, walls) in beside {
         for ((axis, stride, behind), wall) in sides.iter().zip(walls) {
-            if let Some(velocity) = wall {
-                volume.faces.set(*axis, cell + behind * stride, velocity);
+            let Some(velocity) = wall else { continue };
+            let face = cell + behind * stride;
+            let into = volume.faces.velocity(*axis, face) - velocity;
+            if holds_all || (if *behind == 1 { into > 0.0 } else { into < 0.0 }) {
+                volume.faces.set(*axis, face, velocity);
             }
         }
     }

@@ -143,7 +143,8 @@ impl Step<'_> {
             }
             Stage::Mark => {
                 let planes = Some((&scratch.predicted[..], &state.contacts));
-                scratch.volume.iter_mut().for_each(|volume| mark(volume, obstacles, planes));
+                let packing = model.rest_density().map(|density| (density, model.settings.time_step));
+                scratch.volume.iter_mut().for_each(|volume| mark(volume, obstacles, planes, packing));
             }
             Stage::SolvePressure => {
                 self.report.pressure = scratch.volume.as_mut().map(solve_pressure).unwrap_or_default();

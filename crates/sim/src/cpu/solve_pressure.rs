@@ -17,7 +17,9 @@ pub fn solve_pressure(volume: &mut Volume) -> PressureReport {
     let strides = volume.grid.strides();
     volume.system.assemble(&volume.fluid, &volume.kinds, strides);
     let mut right = std::mem::take(&mut volume.solution.right);
-    let divergence = |&cell: &u32| -volume.divergence(cell as usize);
+    // Without a right side below 0 no pressure is below 0: the system's inverse has no negative number.
+    let least = if volume.settings.is_one_sided() { 0.0 } else { f32::NEG_INFINITY };
+    let divergence = |&cell: &u32| (-volume.divergence(cell as usize)).max(least);
     volume.fluid.par_iter().with_min_len(512).map(divergence).collect_into_vec(&mut right);
     volume.solution.right = right;
     let settings = PcgSettings {

@@ -15,7 +15,8 @@ use strandline_base::vec3x8::{Vec3x8, load, splat as all};
 /// velocity, weighted by mass and trilinearly \[Zhu2005\]. Momentum is kept exactly.
 ///
 /// All shapes are `[block][point]` of lanes, world space. Lanes beyond the last strand and points
-/// without mass or too far away take no part. A task sums layers of cells of its own, each face in the order
+/// without mass or too far away take no part. Faces of a one-sided volume keep their masses \[kg\] in place of changes
+/// until `mark`. A task sums layers of cells of its own, each face in the order
 /// of the cells of its points, so that sums do not depend on the number of threads.
 pub fn splat(volume: &mut Volume, positions: &[Vec3Lanes], velocities: &[Vec3Lanes], mass: &[Lanes]) {
     follow(volume, positions, mass);
@@ -27,7 +28,8 @@ pub fn splat(volume: &mut Volume, positions: &[Vec3Lanes], velocities: &[Vec3Lan
     let sorted = sort.order().par_iter().with_min_len(1024).map(|&point| brought[point as usize]);
     sorted.collect_into_vec(carried);
     let components = faces.components.each_mut().map(Vec::as_mut_slice);
-    Layers { first: 0, components, carried, touched, strides: grid.strides() }
+    let kept = if volume.settings.is_one_sided() { 1.0 } else { 0.0 };
+    Layers { first: 0, components, carried, touched, strides: grid.strides(), kept }
         .sum(par::current_num_threads());
 }
 
@@ -142,6 +144,8 @@ struct Layers<'a> {
     /// Cells of these layers whose lower faces points may reach, ascending.
     touched: &'a [u32],
     strides: [usize; 3],
+    /// Share of its mass that a face keeps.
+    kept: f32,
 }
 
 impl Layers<'_> {
@@ -162,19 +166,21 @@ impl Layers<'_> {
             (near[axis], far[axis]) = component.split_at_mut(2 * (cut - self.first));
         }
         let (carried, near_carried) = (&self.carried[before..], &self.carried[..behind]);
+        let kept = self.kept;
         let near = Layers {
             first: self.first,
             components: near,
             carried: near_carried,
             touched: touched.0,
             strides,
+            kept,
         };
-        let far = Layers { first: cut, components: far, carried, touched: touched.1, strides };
+        let far = Layers { first: cut, components: far, carried, touched: touched.1, strides, kept };
         par::join(|| near.sum(tasks / 2), || far.sum(tasks - tasks / 2));
     }
 
     fn sum_alone(self) {
-        let Self { first, components: [u, v, w], carried, touched, strides } = self;
+        let Self { first, components: [u, v, w], carried, touched, strides, kept } = self;
         for Carried { cell, share, mass, velocity: [x, y, z] } in carried {
             let (cell, mass) = (*cell as usize, *mass);
             Stencil::new::<0>(cell, *share, strides).add(u, first, strides, mass, *x);
@@ -185,7 +191,7 @@ impl Layers<'_> {
             for &cell in touched {
                 let pair = &mut component[2 * (cell as usize - first)..][..2];
                 let velocity = if pair[1] > 0.0 { pair[0] / pair[1] } else { 0.0 };
-                pair.copy_from_slice(&[velocity, 0.0]);
+                pair.copy_from_slice(&[velocity, kept * pair[1]]);
             }
         }
     }

@@ -16,6 +16,7 @@ kernel! {
         3 velocities: ReadWrite f32,
         4 faces: Read [f32; 2],
         5 rest: Read f32,
+        6 kinds: Read u32,
     }
 }
 
@@ -42,6 +43,7 @@ impl StageKernels for Stage {
                 velocities: &buffers.velocities,
                 faces: &volume.faces,
                 rest: &buffers.rest,
+                kinds: &volume.kinds,
             },
         )?;
         Ok(vec![bound.over(buffers.point_count())])

@@ -105,7 +105,8 @@ mirror! {
         pub has_roots: u32,
         /// One more than the row of the header of a skin that moves by itself, 0 without one.
         pub skin: u32,
-        pub unused_b: u32,
+        /// 1 where pressure acts against compression alone.
+        pub one_sided: u32,
         pub unused_c: u32,
         pub rods: RodStep,
         then solids: [u32; 4],
@@ -189,12 +190,9 @@ impl Step {
             flip_share: settings.volume.flip_share_in(settings.time_step),
             tolerance: settings.volume.tolerance,
             max_iterations: settings.volume.max_iterations,
-            preconditioner: match settings.volume.preconditioner {
-                Preconditioner::None => PLAIN,
-                Preconditioner::Jacobi => JACOBI,
-                Preconditioner::Auto | Preconditioner::Chebyshev | Preconditioner::Mic0 => CHEBYSHEV,
-            },
+            preconditioner: code(settings.volume.preconditioner),
             slot: slot as u32,
+            one_sided: u32::from(settings.volume.is_one_sided()),
             pressure_share: VolumeSettings::pressure_share_in(settings.time_step),
             holds: u32::from(!grab.grips.is_empty()),
             piece_count: piece_count(&model.colliders) as u32,
@@ -203,6 +201,14 @@ impl Step {
             rods: RodStep::new(model, start, &end, part_time, drive),
             ..Self::default()
         }
+    }
+}
+
+fn code(preconditioner: Preconditioner) -> u32 {
+    match preconditioner {
+        Preconditioner::None => PLAIN,
+        Preconditioner::Jacobi => JACOBI,
+        Preconditioner::Auto | Preconditioner::Chebyshev | Preconditioner::Mic0 => CHEBYSHEV,
     }
 }
 

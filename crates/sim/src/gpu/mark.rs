@@ -5,7 +5,7 @@ use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, k
 
 use super::inputs::Step;
 use super::stage::{StageKernels, Target};
-use super::volume::GridState;
+use super::volume::{GridState, SortedPoint};
 use crate::Model;
 
 kernel! {
@@ -16,6 +16,17 @@ kernel! {
         3 start_index: Read u32,
         4 kinds: ReadWrite u32,
         5 unknowns: ReadWrite u32,
+        6 faces: ReadWrite [f32; 2],
+        7 sorted_points: Read SortedPoint,
+        8 densities: Read f32,
+    }
+}
+
+kernel! {
+    /// Takes the masses from the faces; one thread is one cell.
+    pub(super) struct ForgetMasses in "mark" (super::linked::MARK), entry "forget_masses" {
+        2 grid: Read GridState,
+        6 faces: ReadWrite [f32; 2],
     }
 }
 
@@ -31,17 +42,22 @@ kernel! {
 
 pub(super) struct Stage {
     mark: Kernel<Mark<'static>>,
+    forget_masses: Kernel<ForgetMasses<'static>>,
     carry_walls: Kernel<CarryWalls<'static>>,
 }
 
 impl StageKernels for Stage {
     fn declarations() -> Vec<Declaration> {
-        vec![Mark::declaration(), CarryWalls::declaration()]
+        vec![Mark::declaration(), ForgetMasses::declaration(), CarryWalls::declaration()]
     }
 
     fn new(gpu: &Gpu, model: &Model) -> Result<Self, GpuError> {
         let skins = [skins_constant(&model.colliders)];
-        Ok(Self { mark: Kernel::new(gpu, &skins)?, carry_walls: Kernel::new(gpu, &skins)? })
+        Ok(Self {
+            mark: Kernel::new(gpu, &skins)?,
+            forget_masses: Kernel::new(gpu, &[])?,
+            carry_walls: Kernel::new(gpu, &skins)?,
+        })
     }
 
     fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {
@@ -50,8 +66,15 @@ impl StageKernels for Stage {
         let step = &buffers.step;
         let (grid, start_index, kinds) = (&volume.grid, &volume.start_index, &volume.kinds);
         let (unknowns, faces) = (&volume.unknowns, &volume.faces);
-        let mark = self.mark.bind(gpu, &Mark { step, grid, start_index, kinds, unknowns })?;
+        let (sorted_points, densities) = (&volume.sorted_points, &volume.densities);
+        let mark = Mark { step, grid, start_index, kinds, unknowns, faces, sorted_points, densities };
+        let mut dispatches = vec![self.mark.bind(gpu, &mark)?.over(volume.cell_count)];
+        if volume.is_one_sided {
+            let forget = self.forget_masses.bind(gpu, &ForgetMasses { grid, faces })?;
+            dispatches.push(forget.over(volume.cell_count));
+        }
         let carry_walls = self.carry_walls.bind(gpu, &CarryWalls { step, grid, kinds, faces })?;
-        Ok(vec![mark.over(volume.cell_count), carry_walls.over(volume.cell_count)])
+        dispatches.push(carry_walls.over(volume.cell_count));
+        Ok(dispatches)
     }
 }

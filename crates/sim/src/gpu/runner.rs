@@ -170,7 +170,8 @@ impl GpuRunner {
         } else if change.rest_shape {
             self.buffers.write_rods(&self.model, &self.lengths)?;
         }
-        if change.stages {
+        // Densities at rest go with the masses.
+        if change.stages || change.masses && self.model.rest_density().is_some() {
             self.bound = None;
         }
         Ok(())
@@ -324,6 +325,7 @@ impl GpuRunner {
             if let Some(volume) = &mut self.buffers.volume {
                 volume.gradient = self.gradient;
                 volume.spread = self.spread;
+                volume.pack(self.model.rest_density())?;
             }
             self.bound = None;
             self.bound = Some([self.bind(0)?, self.bind(1)?]);

@@ -2,6 +2,7 @@
 
 use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, MANY, kernel};
 
+use super::inputs::Step;
 use super::pcg::Pcg;
 use super::records::{Gradient, PressureState};
 use super::stage::{StageKernels, Target};
@@ -11,6 +12,7 @@ use crate::Model;
 kernel! {
     /// Rows of the system; one thread is one cell.
     pub(super) struct Assemble in "solve_pressure" (super::linked::SOLVE_PRESSURE), entry "assemble" {
+        0 step: Read Step,
         1 grid: Read GridState,
         2 vectors: ReadWrite f32,
         3 neighbours: ReadWrite u32,
@@ -76,7 +78,8 @@ impl StageKernels for Stage {
         let Some(volume) = &buffers.volume else { return Ok(Vec::new()) };
         let Volume { grid, vectors, neighbours, states, kinds, unknowns, faces, rooms, .. } = volume;
         let mut dispatches = scan.bind(gpu, unknowns, &volume.totals)?;
-        let assemble = Assemble { grid, vectors, neighbours, states, kinds, unknowns, faces };
+        let step = &buffers.step;
+        let assemble = Assemble { step, grid, vectors, neighbours, states, kinds, unknowns, faces };
         dispatches.push(self.assemble.bind(gpu, &assemble)?.over(volume.cell_count));
         let level = LevelRooms { grid, vectors, neighbours, unknowns, rooms };
         dispatches.push((self.level_rooms.bind(gpu, &level)?, [1; 3]));

@@ -77,6 +77,7 @@ kernel! {
 kernel! {
     /// The sums; [`SHARERS`] threads are the three lower faces of a cell.
     pub(super) struct SumFaces in "splat" (super::linked::SPLAT), entry "sum_faces" {
+        0 step: Read Step,
         1 grid: ReadWrite GridState,
         9 start_index: Read u32,
         10 sorted_points: ReadWrite SortedPoint,
@@ -145,7 +146,8 @@ impl StageKernels for Stage {
             gpu,
             &SortPoints { step, grid, predicted, velocities, mass, cell_ranks, start_index, sorted_points },
         )?;
-        let sum_faces = self.sum_faces.bind(gpu, &SumFaces { grid, start_index, sorted_points, faces })?;
+        let sum_faces =
+            self.sum_faces.bind(gpu, &SumFaces { step, grid, start_index, sorted_points, faces })?;
         let mut dispatches =
             vec![bounds.over(buffers.strand_count), (follow, [1; 3]), find_cells.over(points)];
         dispatches.extend(scan.bind(gpu, start_index, &volume.totals)?);

@@ -1,7 +1,7 @@
 //! The buffers of the fluid volume.
 
 use strandline_gpu::{Buffer, Gpu, GpuError, Scan, THREADS, mirror};
-use strandline_groom::LANES;
+use strandline_groom::{LANES, Lanes};
 
 use super::records::{Gradient, MOST_WORKGROUPS, PressureState, Spread};
 use crate::cells::grid::{Grid, MIN_SPACING, ladder};
@@ -51,6 +51,8 @@ pub(super) struct Volume {
     pub cells: [u32; 3],
     /// Cells with the ring.
     pub cell_count: usize,
+    /// True if faces keep their masses until cells are marked.
+    pub is_one_sided: bool,
     pub gradient: Gradient,
     pub spread: Spread,
     pub grid: Buffer<GridState>,
@@ -62,6 +64,8 @@ pub(super) struct Volume {
     /// Numbers of the points of each cell as they were counted.
     pub counted: Buffer<u32>,
     pub sorted_points: Buffer<SortedPoint>,
+    /// Density \[kg/m^3\] around each point at rest, in a one-sided volume.
+    pub densities: Buffer<f32>,
     /// Velocity and change, shape `[component][cell]`.
     pub faces: Buffer<[f32; 2]>,
     pub kinds: Buffer<u32>,
@@ -85,6 +89,7 @@ impl Volume {
         Ok(Self {
             cells,
             cell_count,
+            is_one_sided: false,
             gradient: Gradient::default(),
             spread: Spread::default(),
             grid: Buffer::from_slice(gpu, "grid", &[GridState::start(&grid)])?,
@@ -94,6 +99,7 @@ impl Volume {
             cell_ranks: Buffer::new(gpu, "cells of points", point_count)?,
             counted: Buffer::new(gpu, "points as they were counted", point_count)?,
             sorted_points: Buffer::new(gpu, "sorted points", point_count)?,
+            densities: Buffer::new(gpu, "densities at rest", point_count)?,
             faces: Buffer::new(gpu, "faces", 3 * cell_count)?,
             kinds: Buffer::new(gpu, "kinds of cells", cell_count)?,
             unknowns: Buffer::new(gpu, "unknowns", cell_count + 1)?,
@@ -103,6 +109,12 @@ impl Volume {
             states: Buffer::new(gpu, "state of the pressure", 2)?,
             partials: Buffer::new(gpu, "partial sums", 2 * workgroups)?,
         })
+    }
+
+    /// Takes over the densities at rest \[kg/m^3\]; none in an incompressible volume.
+    pub fn pack(&mut self, densities: Option<&[Lanes]>) -> Result<(), GpuError> {
+        self.is_one_sided = densities.is_some();
+        densities.map_or(Ok(()), |densities| self.densities.write(bytemuck::cast_slice(densities)))
     }
 
     /// Has the box find the hair again.

@@ -6,8 +6,8 @@ use strandline_base::counted;
 use crate::{
     Error, Scene,
     body::{Carrier, Collider, Mesh, Pose, Shape, SkinMotion, Solids},
-    groom::{Groom, Guides, Outside},
-    scene::origin::about,
+    groom::{Groom, Guides, Outside, Tie},
+    scene::{TieSection, origin::about},
     strands::attributes,
 };
 
@@ -53,9 +53,38 @@ pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
     let (mesh, skin) = (loading.mesh.as_ref(), loading.skin.as_ref());
     let start = start(scene, loading.pivot, &all, mesh, skin, &loading.colliders)?;
     notes.extend(move_outside(&mut guides, &start, &loading.colliders, |_| 0.0));
+    notes.extend(tie(scene, &mut guides));
     loading.start = start;
     (loading.strands, loading.chosen, loading.guides) = (Some(all), chosen, Some(guides));
     Ok(())
+}
+
+/// Ties guides where the scene has ties, or else where they come together in knots. Returns a note for each tie.
+fn tie(scene: &Scene, guides: &mut Guides) -> Vec<String> {
+    let named = !scene.ties.is_empty();
+    let ties: Vec<Tie> = match named {
+        true => scene.ties.iter().map(TieSection::tie).collect(),
+        false if scene.groom.find_ties => guides.knots(),
+        false => Vec::new(),
+    };
+    let counts = guides.tie(&ties);
+    let note = |(index, (tie, count)): (usize, (&Tie, usize))| {
+        let [x, y, z] = tie.position.to_array();
+        if !named {
+            let strands = counted(count, "strand comes", "strands come");
+            return format!(
+                "{strands} together at [{x:.3}, {y:.3}, {z:.3}] m of the head: tied there (groom.find_ties = false leaves \
+                 them loose)"
+            );
+        }
+        match count {
+            0 => {
+                format!("ties[{index}] holds no strand: none passes within {} m of its position", tie.radius)
+            }
+            _ => format!("ties[{index}] holds {}", counted(count, "strand", "strands")),
+        }
+    };
+    ties.iter().zip(counts).enumerate().map(note).collect()
 }
 
 /// Strands as they are simulated and drawn; roots without a normal take that of the body.

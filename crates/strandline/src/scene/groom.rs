@@ -3,6 +3,7 @@ use std::path::PathBuf;
 use glam::Vec3;
 use strandline_base::settings;
 
+use crate::groom::Tie;
 use crate::groom::format::{RootEnd, Scale, Up};
 
 settings! {
@@ -23,6 +24,22 @@ settings! {
         rotation: Vec3 = Vec3::ZERO, in [-360.0, 360.0] "degrees", slider [-180.0, 180.0];
         /// Moves these strands, head space.
         translation: Vec3 = Vec3::ZERO, in [-1e4, 1e4] "m";
+    }
+}
+
+settings! {
+    /// A band about hair: the head holds every strand that passes through it, by two points.
+    pub struct TieSection: Copy {
+        /// Middle of the band, head space.
+        position: Vec3 = Vec3::ZERO, in [-1e4, 1e4] "m";
+        /// Distance within which strands are held.
+        radius: f32 = 0.02, in [1e-3, 1.0] "m", slider [0.005, 0.05], more "a band about more hair";
+    }
+}
+
+impl TieSection {
+    pub(crate) fn tie(&self) -> Tie {
+        Tie { position: self.position, radius: self.radius }
     }
 }
 
@@ -48,6 +65,8 @@ settings! {
         /// The end of each strand at which its root is; "auto" turns strands whose last point lies on the body and
         /// whose first does not, and without a body those that taper the other way or end among the roots of all others.
         root_end: RootEnd = RootEnd::default();
+        /// Ties strands where they come together in a knot, as those of a ponytail do, unless the scene has `[[ties]]`.
+        find_ties: bool = true;
         /// Draws colours and widths of the file in place of the look's.
         own_look: bool = true;
         /// Turns the strands of a file: pitch (about x), yaw (about y), roll (about z). Where a scene turns neither and

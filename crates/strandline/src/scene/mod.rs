@@ -29,7 +29,7 @@ pub use colors::hex_color;
 pub use devices::Devices;
 pub use film::{CameraKeyframe, CameraSection, FilmSection, View};
 pub(crate) use given::Given;
-pub use groom::{GroomPart, GroomSection};
+pub use groom::{GroomPart, GroomSection, TieSection};
 pub use head::HeadMotion;
 pub use motion::{KeyframeSection, MotionName, MotionSection, WindKeyframe, WindSection, WindSource};
 pub use surroundings::SurroundingsSection;
@@ -56,6 +56,8 @@ settings! {
         devices: Devices = Devices::default();
         /// Strands from a file, and how guides are made of strands.
         groom: GroomSection = GroomSection::default();
+        /// Bands about hair; none named means those of the knots that are found, see `groom.find_ties`.
+        ties: Vec<TieSection> = Vec::new(), in [0, 64];
         /// The style that is grown when no groom file is named. The default of every number but
         /// `strand_count` and `seed` is that of the style; those of "long" are shown.
         style: StyleSettings = StyleSettings::default();

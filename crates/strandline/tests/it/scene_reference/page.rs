@@ -114,6 +114,7 @@ fn item(list: &str) -> toml::Table {
         "motion.keyframes" | "colliders.keyframes" => toml::Table::try_from(KeyframeSection::default()),
         "wind.keyframes" => toml::Table::try_from(strandline::scene::WindKeyframe::default()),
         "wind.sources" => toml::Table::try_from(strandline::scene::WindSource::default()),
+        "ties" => toml::Table::try_from(strandline::scene::TieSection::default()),
         "camera.keyframes" => toml::Table::try_from(strandline::scene::CameraKeyframe::default()),
         "colliders" => {
             let sphere = ColliderSection::Sphere(SphereSection { center: Vec3::ZERO, ..Default::default() });
