@@ -1280,6 +1280,17 @@ class Film(TypedDict, total=False):
     """Time of motion and wind at the beginning. Allowed: 0 to 1,000,000 s."""
 
 
+class Timeline(TypedDict, total=False):
+    """Frames that a window keeps, so that they are shown again and left as a file without simulating them again."""
+
+    memory: int
+    """Memory for frames. Allowed: 1 to 1,000,000 MB."""
+
+    disk: int
+    """Room on the disk, in the folder for temporary files, for frames beyond the memory. Beyond both the first frames
+    are forgotten. Allowed: 0 to 10,000,000 MB."""
+
+
 class SceneSections(TypedDict, total=False):
     """The sections of a scene."""
 
@@ -1332,3 +1343,6 @@ class SceneSections(TypedDict, total=False):
 
     film: Film
     """Number and rate of the pictures."""
+
+    timeline: Timeline
+    """Frames that a window keeps, so that they are shown again and left as a file without simulating them again."""

@@ -6,13 +6,14 @@ use eframe::egui;
 use glam::Vec3;
 use strandline::{
     Backend, Camera, Change, Error, Live, PictureSettings, Scene,
+    edit::{History, is_look, load_look},
     format::{Format, endings},
     live::{Command, Shown},
     mesh::MeshFormat,
     settings::SettingError,
 };
 
-use crate::{export, files, messages, rescue, saves};
+use crate::{compared, export, files, found, messages, playback, recent, rescue, saves};
 
 /// The window's state: the scene that plays, and the changes of the user.
 pub struct App {
@@ -69,6 +70,17 @@ pub struct App {
     /// Moving hair that is being written, and its part of the film.
     pub(crate) exporting: Option<export::Export>,
     pub(crate) export_wanted: export::Wanted,
+    /// Steps that can be undone, and true while an undone scene is loaded.
+    pub(crate) history: History,
+    pub(crate) restoring: bool,
+    /// True until the first scene is there.
+    pub(crate) loads_first: bool,
+    pub(crate) playback: playback::Playback,
+    pub(crate) finding: found::Finding,
+    pub(crate) recent: recent::Recent,
+    pub(crate) compare: Option<compared::Compare>,
+    /// Views that are kept.
+    pub(crate) views: Vec<Camera>,
     /// Folder of the next picture and scene.
     pub folder: PathBuf,
 }
@@ -105,7 +117,15 @@ impl App {
         };
         let live = Live::new(scene.clone(), wake)?;
         live.send(Command::Adapt(true));
-        Ok(Self {
+        let app = Self {
+            history: History::new(&scene),
+            restoring: false,
+            loads_first: true,
+            playback: playback::Playback::default(),
+            finding: found::Finding::default(),
+            recent: recent::Recent::default(),
+            compare: None,
+            views: Vec::new(),
             live,
             context,
             base: scene.clone(),
@@ -141,7 +161,9 @@ impl App {
             exporting: None,
             export_wanted: export::Wanted::default(),
             folder: PathBuf::from("out"),
-        })
+        };
+        app.send_playback();
+        Ok(app)
     }
 
     /// The scene that a file stands for: itself, or `scene` with another groom or body.
@@ -153,6 +175,7 @@ impl App {
         let mut scene = scene.clone();
         let absolute = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
         match ending.as_deref() {
+            Some("toml") if is_look(file) => return load_look(&scene, file),
             Some("toml") => return Scene::load(file),
             _ if MeshFormat::is_of(file) => {
                 scene.body.file = Some(absolute);
@@ -255,7 +278,11 @@ impl App {
             None => self.own_scene(),
         };
         match Self::scene_of(&onto, file) {
-            Ok(scene) => self.load(scene),
+            Ok(_) if self.pending.is_none() && is_look(file) => self.load_look(file),
+            Ok(scene) => {
+                self.recent.add(file);
+                self.load(scene);
+            }
             Err(error) => self.error = Some(error.to_string()),
         }
     }

@@ -28,7 +28,9 @@ impl App {
             (Some(file), Wanted::Picture) => self.save_picture(Some(file)),
             (Some(file), Wanted::Scene) => self.save_scene(Some(&file)),
             (Some(file), Wanted::Moving) => self.export(Some(&file)),
-            (None, Wanted::Open) if at_once => {
+            (Some(file), Wanted::OpenLook) => self.load_look(&file),
+            (Some(file), Wanted::SaveLook) => self.save_look(Some(&file)),
+            (None, Wanted::Open | Wanted::OpenLook) if at_once => {
                 self.note(
                     "this system has no file dialog: type a path, or drop a file on the window".to_owned(),
                 );

@@ -4,7 +4,10 @@ use std::ops::RangeInclusive;
 
 use eframe::egui::{self, Response, Slider, SliderClamping, Ui, emath::Numeric};
 use glam::Vec3;
-use strandline::settings::{Kind, Row};
+use strandline::{
+    edit::quantity,
+    settings::{Kind, Row},
+};
 
 /// A section of the panel.
 pub fn section(ui: &mut Ui, name: &str, open: bool, add: impl FnOnce(&mut Ui)) {
@@ -15,18 +18,30 @@ pub fn section(ui: &mut Ui, name: &str, open: bool, add: impl FnOnce(&mut Ui)) {
 /// outside that range, as a scene may have it, stays until it is moved.
 pub fn slide<N: Numeric>(ui: &mut Ui, value: (&mut N, N), row: &Row, name: &str) -> bool {
     let [least, most] = row.slider().map(N::from_f64);
-    slide_in(ui, value, least..=most, name, &about(row))
+    slide_of(ui, value, least..=most, (name, row.unit), &about(row))
 }
 
 /// A slider for a value that is no setting.
 pub fn slide_in<N: Numeric>(
     ui: &mut Ui,
-    (value, default): (&mut N, N),
+    value: (&mut N, N),
     range: RangeInclusive<N>,
     name: &str,
     tip: &str,
 ) -> bool {
+    slide_of(ui, value, range, (name, ""), tip)
+}
+
+/// A slider for a value with a unit, which may be typed with another: `3cm`.
+fn slide_of<N: Numeric>(
+    ui: &mut Ui,
+    (value, default): (&mut N, N),
+    range: RangeInclusive<N>,
+    (name, unit): (&str, &'static str),
+    tip: &str,
+) -> bool {
     let slider = Slider::new(value, range).text(name).clamping(SliderClamping::Edits);
+    let slider = slider.custom_parser(move |text| quantity(text, unit));
     let response = ui.add(slider).on_hover_text(tip_of(tip, &number(default.to_f64())));
     set_back(ui, &response, (value, default)) || response.changed()
 }

@@ -28,6 +28,12 @@ impl Default for Wanted {
 }
 
 impl Wanted {
+    /// Settings of a file.
+    pub fn out(&self, path: &Path) -> OutSettings {
+        let Self { every, what, target, .. } = *self;
+        OutSettings { every, what, target, ..OutSettings::new(path) }
+    }
+
     /// The first frame and the number of frames up to the last one.
     fn frames(&self, frames_per_second: f32) -> [u32; 2] {
         let frame = |seconds: f32| (seconds.max(0.0) * frames_per_second).round() as u32;
@@ -60,8 +66,7 @@ impl Export {
     ) -> Result<Self, Error> {
         let [first, frames] = wanted.frames(scene.film.frames_per_second);
         scene.film.frames = frames;
-        let Wanted { every, what, target, .. } = *wanted;
-        let settings = OutSettings { every, what, target, first, ..OutSettings::new(path) };
+        let settings = OutSettings { first, ..wanted.out(path) };
         settings.check()?;
         let (stop, done) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU32::new(0)));
         let (tell, result) = channel();

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use strandline::file::counted;
-use strandline::{Target, Written};
+use strandline::{Target, Written, live::Command};
 
 use crate::App;
 use crate::export::{Export, numbered};
@@ -39,20 +39,39 @@ impl App {
         self.exporting.is_some()
     }
 
+    /// Writes the part of the timeline that is played, as it was seen, without simulating it again.
+    pub fn export_kept(&mut self, path: Option<&Path>) {
+        let timeline = self.timeline();
+        let [first, last] = self.playback.marks;
+        let first = first.unwrap_or(timeline.first);
+        let frames = [first, last.unwrap_or(timeline.good)];
+        let is_usda = self.export_wanted.target != Target::Any;
+        let ending = if is_usda { "usda" } else { "npz" };
+        let Some(path) = self.path_or_free(path, "hair", ending) else { return };
+        let mut scene = self.seen();
+        scene.begin_at_rest();
+        let settings = self.export_wanted.out(&path);
+        self.live.send(Command::Export(Box::new(scene), settings, frames));
+    }
+
+    /// Tells of moving hair that is written.
+    pub(crate) fn tell_written(&mut self, written: &Written) {
+        let Written { place, frames, strands, .. } = written;
+        let frames = counted(*frames, "frame", "frames");
+        self.note(format!(
+            "wrote {frames} of {}: {}",
+            counted(*strands, "strand", "strands"),
+            place.display()
+        ));
+    }
+
     /// Tells of moving hair that is written.
     pub(crate) fn take_exported(&mut self) {
         let Some((path, result)) = self.exporting.as_ref().and_then(Export::result) else { return };
         let path = path.to_owned();
         self.exporting = None;
         match result {
-            Ok(Some(Written { place, frames, strands, .. })) => {
-                self.note(format!(
-                    "wrote {} of {}: {}",
-                    counted(frames, "frame", "frames"),
-                    counted(strands, "strand", "strands"),
-                    place.display()
-                ));
-            }
+            Ok(Some(written)) => self.tell_written(&written),
             Ok(None) => {}
             Err(error) => self.error = Some(format!("cannot export {}: {error}", path.display())),
         }

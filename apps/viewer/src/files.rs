@@ -18,6 +18,10 @@ pub enum Wanted {
     Scene,
     /// To write moving hair to.
     Moving,
+    /// A look to be loaded, and to save one to.
+    OpenLook,
+    /// See [`Wanted::OpenLook`].
+    SaveLook,
 }
 
 /// A dialog that is open.
@@ -86,6 +90,13 @@ fn question(wanted: Wanted) -> Question {
         Wanted::Picture => {
             let dialog = dialog.set_title("Save the picture").add_filter("PNG", &["png"]);
             Box::pin(dialog.set_file_name("view.png").save_file())
+        }
+        Wanted::OpenLook => {
+            Box::pin(dialog.set_title("Load a look").add_filter("look", &["toml"]).pick_file())
+        }
+        Wanted::SaveLook => {
+            let dialog = dialog.set_title("Save the look").add_filter("look", &["toml"]);
+            Box::pin(dialog.set_file_name("look.toml").save_file())
         }
         Wanted::Scene => {
             let dialog = dialog.set_title("Save the scene").add_filter("scene", &["toml"]);

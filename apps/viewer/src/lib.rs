@@ -5,17 +5,26 @@
 
 mod app;
 mod asking;
+mod compare;
+mod compared;
 mod controls;
 mod export;
 mod exporting;
 mod files;
+mod finding;
+mod found;
 mod libraries;
+mod looks;
 mod messages;
 mod panels;
+mod playback;
+mod recent;
 mod rescue;
 mod saves;
 mod saving;
 mod status_bar;
+mod timeline_bar;
+mod undoing;
 mod viewport;
 mod wind;
 mod window;
@@ -64,7 +73,8 @@ pub fn open(scene: Scene) -> Result<(), ViewError> {
         setup.device_descriptor = Arc::new(device);
     }
     // Hair grows while the system makes the window.
-    let app = App::new(scene).map_err(ViewError::NotStarted)?;
+    let mut app = App::new(scene).map_err(ViewError::NotStarted)?;
+    app.recent = recent::Recent::of_user();
     let kept = app.kept.clone();
     let make = |context: &eframe::CreationContext| {
         bound_size(context);

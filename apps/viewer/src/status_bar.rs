@@ -32,7 +32,7 @@ pub fn show(app: &App, ui: &mut egui::Ui) {
         if let Some(frames) = shown.recorded {
             ui.colored_label(
                 egui::Color32::LIGHT_RED,
-                format!("recording, {:.1} s", f64::from(frames) / 60.0),
+                format!("recording, {:.1} s", f64::from(frames) / shown.timeline.rate.max(1.0)),
             );
         }
         let drawing: f64 = shown.drawing.seconds.iter().map(|(_, seconds)| seconds).sum();

@@ -6,7 +6,7 @@ use strandline::{
     Camera, Change, PictureSettings, Ray, live::Command, scene::MotionSection, settings::Group,
 };
 
-use crate::{App, Tool, controls::button, files::Wanted, messages, wind};
+use crate::{App, Tool, compare, controls::button, files::Wanted, messages, wind};
 
 /// Turn of the view or the head for a point that the mouse moves \[radians\].
 const ORBIT: f32 = 0.008;
@@ -20,6 +20,13 @@ pub fn keys(app: &mut App, ui: &egui::Ui) {
     }
     // The modifiers are those of the moment of the press, however long a pass takes.
     let pressed = |modifiers, key| ui.input_mut(|input| input.consume_key(modifiers, key));
+    // The longer one first: the shorter would take it too.
+    if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z) || pressed(Modifiers::COMMAND, Key::Y) {
+        app.redo();
+    }
+    if pressed(Modifiers::COMMAND, Key::Z) {
+        app.undo();
+    }
     file_keys(app, ui, |key| pressed(Modifiers::COMMAND, key));
     for (key, way) in [
         (Key::ArrowLeft, Vec2::NEG_X),
@@ -30,11 +37,32 @@ pub fn keys(app: &mut App, ui: &egui::Ui) {
         let camera = app.camera;
         if pressed(Modifiers::SHIFT, key) {
             look(app, pan(&camera, 0.1 * way));
-        } else if pressed(Modifiers::NONE, key) {
+        } else if pressed(Modifiers::ALT, key) {
             look(app, camera.orbit(0.1 * way.x, 0.1 * way.y));
         }
     }
+    time_keys(app, |key| pressed(Modifiers::NONE, key));
     plain_keys(app, |key| pressed(Modifiers::NONE, key));
+}
+
+fn time_keys(app: &mut App, pressed: impl Fn(Key) -> bool) {
+    for (key, frames) in
+        [(Key::ArrowLeft, -1), (Key::ArrowRight, 1), (Key::ArrowDown, -10), (Key::ArrowUp, 10)]
+    {
+        if pressed(key) {
+            app.move_by(frames);
+        }
+    }
+    for (key, frame) in [(Key::Home, 0), (Key::End, u32::MAX)] {
+        if pressed(key) {
+            app.seek(frame);
+        }
+    }
+    for (key, end) in [(Key::I, 0), (Key::O, 1)] {
+        if pressed(key) {
+            app.mark(end);
+        }
+    }
 }
 
 fn file_keys(app: &mut App, ui: &egui::Ui, pressed: impl Fn(Key) -> bool) {
@@ -77,7 +105,7 @@ fn plain_keys(app: &mut App, pressed: impl Fn(Key) -> bool) {
     }
 }
 
-fn look(app: &mut App, camera: Camera) {
+pub fn look(app: &mut App, camera: Camera) {
     (app.camera, app.follows) = (camera, false);
     app.looked = app.live.send(Change::Camera(camera));
 }
@@ -104,7 +132,11 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
     messages::show(&mut app.notes, &mut app.error, ui, room);
     let Some(texture) = &app.texture else {
         // No spinner: it would take time from the loading.
-        let text = if app.is_loading() { "growing hair ..." } else { "nothing to show yet: open a scene" };
+        let text = if app.is_loading() || app.error.is_none() {
+            "growing hair ..."
+        } else {
+            "nothing to show yet: open a scene"
+        };
         ui.centered_and_justified(|ui| ui.label(text));
         return;
     };
@@ -113,8 +145,10 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
     let share = (room.width() / shape.x).min(room.height() / shape.y);
     let place =
         Rect::from_center_size(room.center(), if app.recording { shape * share } else { room.size() });
+    let own = texture.id();
     let image = egui::Image::new(texture).fit_to_exact_size(place.size()).sense(egui::Sense::drag());
     let response = ui.put(place, image);
+    compare::show(app, ui, place, own);
     mouse(app, ui, &response);
     if response.hovered() {
         let scroll = ui.input(|input| input.smooth_scroll_delta().y);

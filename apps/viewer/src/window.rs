@@ -5,11 +5,12 @@ use std::time::{Duration, Instant};
 use eframe::egui;
 use strandline::{
     Camera, ErrorKind, Scene,
+    edit::History,
     live::{Command, LiveEvent, Shown},
     mesh::Aabb,
 };
 
-use crate::{App, panels, status_bar, viewport};
+use crate::{App, panels, status_bar, timeline_bar, viewport};
 
 /// Interval at which the scene is kept.
 const KEPT_EVERY: Duration = Duration::from_secs(2);
@@ -32,6 +33,7 @@ impl App {
                 LiveEvent::NotLoaded(number, kind, error) => {
                     // The previous scene still plays.
                     self.pending.take_if(|(pending, _)| *pending == number);
+                    self.restoring = false;
                     self.error = Some(with_remedy(kind, error));
                     if self.shown.is_none() {
                         self.give_up_pictures();
@@ -45,6 +47,7 @@ impl App {
                 LiveEvent::Saved(path) => self.note(format!("wrote {}", path.display())),
                 LiveEvent::Recorded if self.finishing > 0 => self.finishing -= 1,
                 LiveEvent::Recorded => self.recording = false,
+                LiveEvent::Exported(written) => self.tell_written(&written),
             }
         }
     }
@@ -60,6 +63,14 @@ impl App {
             // Those that it is lit with, for the panel to change.
             self.scene.lights = self.scene.look.lights(self.center);
         }
+        if self.loads_first {
+            self.history = History::new(&self.scene);
+        } else if std::mem::take(&mut self.restoring) {
+            self.history.settle(&self.scene);
+        } else {
+            self.remember_now();
+        }
+        self.loads_first = false;
         self.base = self.scene.clone();
         (self.camera, self.home, self.grabs) = (camera, camera, false);
         self.notes.clear();
@@ -107,6 +118,7 @@ impl App {
         self.take_events();
         self.take_files(ui);
         self.take_picture(ui.ctx());
+        self.follow_compared(ui.ctx());
         self.take_answer();
         self.take_saved();
         self.take_exported();
@@ -114,7 +126,9 @@ impl App {
         viewport::keys(self, ui);
         egui::Panel::bottom("status_bar").show(ui, |ui| status_bar::show(self, ui));
         egui::Panel::left("panels").default_size(290.0).show(ui, |ui| panels::show(self, ui));
+        egui::Panel::bottom("timeline").show(ui, |ui| timeline_bar::show(self, ui));
         egui::CentralPanel::default().show(ui, |ui| viewport::show(self, ui));
+        self.remember(ui);
     }
 }
 

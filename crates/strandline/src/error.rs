@@ -114,6 +114,9 @@ pub enum Error {
     /// The system gave no thread for the simulation.
     #[error("cannot start the simulation's thread: {0}")]
     Thread(std::io::Error),
+    /// Frames that were kept on the disk could not be read again.
+    #[error("cannot read the frames that were kept, simulate them again: {0}")]
+    KeptFrames(std::io::Error),
     /// The simulation's thread panicked: a fault of the library.
     #[error("the simulation stopped with an error of the program's own")]
     WorkerGone,
@@ -226,6 +229,7 @@ impl Error {
             | Self::Write { .. }
             | Self::Render(RenderError::Save { .. } | RenderError::Surroundings { .. })
             | Self::Body(_)
+            | Self::KeptFrames(_)
             | Self::Groom(_) => ErrorKind::File,
             Self::Thread(_) | Self::WorkerGone | Self::Sim(_) | Self::Render(_) | Self::Gpu(_) => {
                 ErrorKind::Other

@@ -23,6 +23,7 @@
 #![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
 
 mod cache;
+pub mod edit;
 mod error;
 mod film;
 mod frame_loop;

@@ -13,9 +13,11 @@ use strandline::{
 use crate::{
     App,
     controls::{button, choose, colour, slide},
+    looks,
 };
 
 pub fn show(app: &mut App, ui: &mut Ui) {
+    looks::files(app, ui);
     let before = app.scene.look.clone();
     let (look, base, rows) = (&mut app.scene.look, &app.base.look, &Look::ROWS);
     colours(look, base, ui);

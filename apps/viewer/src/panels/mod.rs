@@ -12,21 +12,44 @@ use eframe::egui::{self, Ui};
 use strandline::{Change, live::Command};
 
 use crate::{
-    App,
+    App, compare,
     controls::{button, section},
+    finding, looks,
+    undoing::{self, Part},
 };
 
 pub fn show(app: &mut App, ui: &mut Ui) {
     egui::ScrollArea::vertical().show(ui, |ui| {
         play(app, ui);
+        finding::show(app, ui);
         section(ui, "Scene", true, |ui| scene::show(app, ui));
-        section(ui, "Motion", true, |ui| motion::show(app, ui));
-        section(ui, "Simulation", false, |ui| simulation::show(app, ui));
-        section(ui, "Look", true, |ui| look::show(app, ui));
-        section(ui, "Lights", false, |ui| lights::show(app, ui));
-        section(ui, "Detail", false, |ui| detail::show(app, ui));
+        panel(app, ui, "Motion", true, Part::Motion, motion::show);
+        panel(app, ui, "Simulation", false, Part::Simulation, simulation::show);
+        panel(app, ui, "Look", true, Part::Look, look::show);
+        panel(app, ui, "Lights", false, Part::Lights, lights::show);
+        panel(app, ui, "Detail", false, Part::Detail, detail::show);
+        section(ui, "View", false, |ui| {
+            looks::views(app, ui);
+            compare::controls(app, ui);
+        });
         section(ui, "Save", false, |ui| save::show(app, ui));
+        section(ui, "Steps", false, |ui| undoing::show(app, ui));
         section(ui, "Keys", false, keys);
+    });
+}
+
+/// A panel that can be set back.
+fn panel(
+    app: &mut App,
+    ui: &mut Ui,
+    name: &str,
+    open: bool,
+    part: Part,
+    show: impl FnOnce(&mut App, &mut Ui),
+) {
+    section(ui, name, open, |ui| {
+        show(app, ui);
+        ui.push_id(name, |ui| undoing::resets(app, ui, part));
     });
 }
 
@@ -35,7 +58,7 @@ fn play(app: &mut App, ui: &mut Ui) {
         if button(ui, if app.playing { "Pause" } else { "Play" }, "stand still or play on: space") {
             app.play(!app.playing);
         }
-        if button(ui, "Step", "one frame of 1/60 s: the full stop") {
+        if button(ui, "Step", "one frame of the film: the full stop") {
             app.play(false);
             app.live.send(Command::Step);
         }
@@ -58,7 +81,12 @@ fn keys(ui: &mut Ui) {
         (".", "one frame"),
         ("R", "back to rest"),
         ("G", "the mouse grabs, or orbits again"),
-        ("arrows", "orbit; with shift pan"),
+        ("left, right", "a frame back, a frame on"),
+        ("down, up", "ten frames back, ten on"),
+        ("Home, End", "the first and the last kept frame"),
+        ("I, O", "the part that is played begins, ends here"),
+        ("alt arrows", "orbit; with shift pan"),
+        ("ctrl Z", "undo; with shift redo"),
         ("+ and -", "nearer, farther"),
         ("F", "the view of the scene"),
         ("V", "begin or end a video"),

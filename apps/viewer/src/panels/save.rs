@@ -55,6 +55,10 @@ fn moving(app: &mut App, ui: &mut Ui) {
                 .on_hover_text("units and axes of a .usda");
         }
     });
+    let tip = "the frames from in to out as they are kept, without simulating them again, into out/";
+    if button(ui, "Kept frames", tip) {
+        app.export_kept(None);
+    }
     ui.horizontal(|ui| {
         let tip = "into out/: as a moving cache (.npz) for any, as text USD (.usda) for a program";
         if button(ui, "Moving hair", tip) {

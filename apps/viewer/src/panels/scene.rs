@@ -34,6 +34,22 @@ pub fn show(app: &mut App, ui: &mut Ui) {
             app.ask(Wanted::Open, ui.ctx());
         }
     });
+    if !app.recent.files().is_empty() {
+        let mut chosen = None;
+        let list = egui::ComboBox::from_label("recent").selected_text("files");
+        let list = list.show_ui(ui, |ui| {
+            for file in app.recent.files() {
+                let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                if ui.selectable_label(false, name).on_hover_text(file.display().to_string()).clicked() {
+                    chosen = Some(file.clone());
+                }
+            }
+        });
+        list.response.on_hover_text("files that were opened lately\ndefault none");
+        if let Some(file) = chosen {
+            app.open_file(&file);
+        }
+    }
     ui.horizontal(|ui| {
         let field =
             egui::TextEdit::singleline(&mut app.path).hint_text("path of a file").desired_width(180.0);

@@ -3,6 +3,7 @@
 mod loading;
 mod panels;
 mod person;
+mod timeline;
 
 use std::time::Duration;
 
@@ -149,7 +150,7 @@ fn a_scene_saved_in_mid_swing_begins_with_the_picture_that_was_seen() {
     window.app_mut().folder = folder.path().join("saved");
     window.until("pictures", |app| app.shown().is_some_and(|shown| shown.frame > 20));
     window.press(egui::Key::Space);
-    window.press(egui::Key::ArrowLeft);
+    window.press_with(egui::Modifiers::ALT, egui::Key::ArrowLeft);
     window.settle();
     for key in [egui::Key::S, egui::Key::P, egui::Key::P] {
         window.press_with(egui::Modifiers::COMMAND, key);

@@ -124,6 +124,25 @@ impl Window {
         self.0.step();
     }
 
+    /// True where a label with this text is seen.
+    pub fn has_label(&self, text: &str) -> bool {
+        self.0.query_by_label(text).is_some()
+    }
+
+    /// Types a value into the field beside a slider.
+    pub fn type_into(&mut self, label: &str, text: &str) {
+        let slider = self.control(Role::Slider, label).rect();
+        let field = self.0.query_all_by_role(Role::SpinButton);
+        let field = field.filter(|node| (node.rect().center().y - slider.center().y).abs() < 4.0);
+        let place = field.map(|node| node.rect().center()).next().expect("a field beside the slider");
+        self.pass(vec![egui::Event::PointerMoved(place), button(place, true)], None);
+        self.pass(vec![button(place, false)], None);
+        self.pass(Vec::new(), None);
+        self.press_with(egui::Modifiers::COMMAND, egui::Key::A);
+        self.pass(vec![egui::Event::Text(text.to_owned())], None);
+        self.press(egui::Key::Enter);
+    }
+
     /// Drags with the left button from one place to another.
     pub fn drag(&mut self, from: egui::Pos2, to: egui::Pos2) {
         self.pass(vec![egui::Event::PointerMoved(from), button(from, true)], None);

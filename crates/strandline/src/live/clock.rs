@@ -8,8 +8,18 @@ use strandline_base::Stopwatch;
 
 /// The time by which a [`Live`](crate::Live) judges how long pictures take and how long nothing has happened: that of
 /// the machine by default, or one that a test moves on.
-#[derive(Clone, Default)]
-pub struct LiveClock(Option<Arc<Mutex<Manual>>>);
+#[derive(Clone)]
+pub struct LiveClock {
+    manual: Option<Arc<Mutex<Manual>>>,
+    /// The beginning of its time.
+    start: Stopwatch,
+}
+
+impl Default for LiveClock {
+    fn default() -> Self {
+        Self { manual: None, start: Stopwatch::start() }
+    }
+}
 
 /// A time that stands still until it is moved on.
 #[derive(Default)]
@@ -24,7 +34,7 @@ struct Manual {
 impl LiveClock {
     /// A clock that stands still until it is moved on, by which pictures take no time.
     pub fn manual() -> Self {
-        Self(Some(Arc::default()))
+        Self { manual: Some(Arc::default()), ..Self::default() }
     }
 
     /// Moves a manual clock on.
@@ -42,7 +52,7 @@ impl LiveClock {
     }
 
     fn manual_time(&self) -> Option<MutexGuard<'_, Manual>> {
-        self.0.as_ref().map(|manual| manual.lock().unwrap_or_else(PoisonError::into_inner))
+        self.manual.as_ref().map(|manual| manual.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// Has `wake` called whenever a manual clock moves on.
@@ -58,6 +68,11 @@ impl LiveClock {
         let drawn = draw();
         let seconds = self.manual_time().map_or_else(|| watch.seconds(), |manual| manual.picture_seconds);
         (drawn, seconds)
+    }
+
+    /// Time since its beginning.
+    pub(super) fn now(&self) -> Duration {
+        self.manual_time().map_or_else(|| self.start.elapsed(), |manual| manual.now)
     }
 
     /// The end of a time that begins now.

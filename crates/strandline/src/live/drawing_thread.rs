@@ -1,7 +1,7 @@
 //! The drawing thread.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -11,11 +11,12 @@ use super::loaded::Loaded;
 use super::messages::{Command, LiveEvent, Out, Shown};
 use super::playing::{Drafts, Playing, changes_cost, of_size};
 use super::recorder::Recorder;
+use super::timeline::Range;
 use crate::{
-    Error, ErrorKind, Scene, Sources,
+    Error, ErrorKind, Scene, Sources, Written,
     film::FilmFiles,
     render::{FrameReport, Picture},
-    session::{Change, Event, FRAME},
+    session::{Change, Event},
 };
 
 /// A message to the drawing thread.
@@ -25,6 +26,8 @@ pub(super) enum Message {
     Loaded(u64, Result<Box<Loaded>, Error>),
     /// The film with this number is over.
     Recorded(u64, Result<FilmFiles, Error>),
+    /// Kept frames are written.
+    Exported(Result<Written, Error>),
     /// Somebody waits until nothing is left to do.
     Idle(Sender<()>),
     /// A clock that stood still was moved on.
@@ -36,7 +39,7 @@ pub(super) enum Message {
 /// The drawing thread.
 pub(super) struct DrawingThread {
     messages: Receiver<Message>,
-    own: Sender<Message>,
+    pub(super) own: Sender<Message>,
     out: Arc<Mutex<Out>>,
     wake: Box<dyn Fn() + Send>,
     clock: LiveClock,
@@ -72,7 +75,7 @@ impl DrawingThread {
 
     fn play(&self, playing: &mut Playing) {
         loop {
-            let deadline = self.clock.after(playing.patience());
+            let deadline = self.clock.after(playing.patience(self.clock.now()));
             if playing.is_idle() {
                 // The caller that waits may be gone.
                 for idler in playing.idlers.drain(..) {
@@ -114,6 +117,9 @@ impl DrawingThread {
             Message::Command(command) => command,
             Message::Loaded(load, loaded) => return self.take_scene(playing, load, loaded),
             Message::Recorded(film, files) => return self.tell_film(playing, film, files),
+            Message::Exported(written) => {
+                return self.emit(written.map_or_else(LiveEvent::from, LiveEvent::Exported));
+            }
             Message::Idle(idler) => return playing.idlers.push(idler),
             Message::Advanced | Message::End => return,
         };
@@ -122,7 +128,7 @@ impl DrawingThread {
             Command::Load(scene) => self.load(playing, scene, Box::default()),
             Command::LoadSources(scene, sources) => self.load(playing, scene, sources),
             // Steps that were asked for before are among those it plays.
-            Command::Play(true) => (playing.playing, playing.steps) = (true, 0),
+            Command::Play(true) => playing.play(self.clock.now()),
             Command::Play(false) => playing.playing = false,
             Command::Step => playing.steps += u32::from(!playing.playing),
             Command::Adapt(adapts) => playing.adapts = adapts,
@@ -130,6 +136,12 @@ impl DrawingThread {
             Command::Record(folder) => self.record(playing, &folder),
             Command::StopRecording => playing.finishing.extend(playing.recorder.take().map(Recorder::finish)),
             Command::Change(change) => self.change(playing, change),
+            Command::Seek(frame) => self.seek(playing, frame),
+            Command::Range(marks, loops) => {
+                playing.set_range(|range| (range.marks, range.loops) = (marks, loops))
+            }
+            Command::Pace(pace) => playing.set_range(|range| range.pace = pace),
+            Command::Export(scene, settings, frames) => self.export(playing, *scene, &settings, frames),
         }
     }
 
@@ -141,9 +153,9 @@ impl DrawingThread {
         playing.stale = true;
         playing.tried &= !changes_cost(&change);
         let fixed = playing.recorder.is_some();
-        let Some(Loaded { session, .. }) = playing.scene.as_deref_mut() else { return };
-        let change = if fixed { of_size(change, session.settings()) } else { change };
-        if let Err(error) = session.change(change) {
+        let Some(loaded) = playing.scene.as_deref_mut() else { return };
+        let change = if fixed { of_size(change, loaded.session.settings()) } else { change };
+        if let Err(error) = loaded.change(change) {
             self.emit(error.into());
         }
     }
@@ -154,7 +166,8 @@ impl DrawingThread {
             // Another scene was asked for since.
             _ if load != playing.load => {}
             Ok(mut loaded) => {
-                let Loaded { session, notes } = &mut *loaded;
+                let Loaded { session, notes, timeline, .. } = &mut *loaded;
+                timeline.range = Range { due: self.clock.now(), ..playing.range };
                 let (camera, bounds) = (*session.view().camera(), session.view().bounds());
                 let scene = Box::new(session.scene().clone());
                 self.emit(LiveEvent::Loaded(load, scene, camera, bounds, notes.clone()));
@@ -194,41 +207,18 @@ impl DrawingThread {
         }
     }
 
-    fn record(&self, playing: &mut Playing, folder: &Path) {
-        if playing.recorder.is_some() {
-            return;
+    /// Shows a kept frame, after all that the simulation has begun.
+    fn seek(&self, playing: &mut Playing, frame: u32) {
+        playing.steps = 0;
+        let caught_up = self.catch_up(playing);
+        playing.is_frame = false;
+        let Some(loaded) = &mut playing.scene else { return };
+        let shown = caught_up.and_then(|()| loaded.show(loaded.timeline.nearest(frame)));
+        loaded.timeline.range.due = self.clock.now();
+        playing.stale = true;
+        if let Err(error) = shown {
+            self.emit(error.into());
         }
-        let own = self.own.clone();
-        playing.film += 1;
-        let film = playing.film;
-        let done = move |files| {
-            let _ = own.send(Message::Recorded(film, files));
-        };
-        match Recorder::new(folder, (1.0 / FRAME) as f32, done) {
-            Ok(recorder) => playing.recorder = Some(recorder),
-            Err(error) => {
-                self.emit(error.into());
-                self.emit(LiveEvent::Recorded);
-            }
-        }
-    }
-
-    fn tell_film(&self, playing: &mut Playing, number: u64, film: Result<FilmFiles, Error>) {
-        playing.finishing.retain(|thread| !thread.is_finished());
-        match film {
-            Ok(film) => {
-                let files = film.files.last().map(|path| format!("wrote {}", path.display()));
-                film.notes.into_iter().chain(files).for_each(|note| self.emit(LiveEvent::Note(note)));
-            }
-            Err(error) => {
-                if number == playing.film {
-                    // It may have ended by itself.
-                    playing.finishing.extend(playing.recorder.take().map(Recorder::finish));
-                }
-                self.emit(error.into());
-            }
-        }
-        self.emit(LiveEvent::Recorded);
     }
 
     /// Saves a scene, with the hair as the commands before this one left it.
@@ -268,7 +258,7 @@ impl DrawingThread {
             }
             playing.steps -= 1;
             let Some(loaded) = &mut playing.scene else { break };
-            loaded.session.start_frame(playing.received)?;
+            loaded.advance(playing.received, self.clock.now())?;
             self.catch_up(playing)?;
         }
         Ok(())
@@ -277,16 +267,23 @@ impl DrawingThread {
     /// Simulates and draws one frame, as far as there is anything to do.
     fn frame(&self, playing: &mut Playing, draft: bool) -> Result<(), Error> {
         let Some(loaded) = &mut playing.scene else { return Ok(()) };
+        let now = self.clock.now();
+        let is_due = playing.steps > 0 || loaded.timeline.range.wait(now).is_zero();
         let moves = (playing.playing || playing.steps > 0) && !playing.is_frame;
-        if moves && loaded.session.started() == 0 {
-            loaded.session.start_frame(playing.received)?;
+        if moves && is_due && loaded.session.started() == 0 {
+            let shows = loaded.advance(playing.received, now)?;
+            (playing.is_frame, playing.stale) = (playing.is_frame | shows, playing.stale | shows);
             playing.steps = playing.steps.saturating_sub(1);
         }
-        self.catch_up(playing)?;
+        // A frame that is there before its time waits for it.
+        if is_due || !playing.playing || loaded.session.started() != 1 || loaded.timeline.under_way.is_none()
+        {
+            self.catch_up(playing)?;
+        }
         let is_frame = std::mem::take(&mut playing.is_frame);
         let Some(loaded) = playing.scene.as_mut().filter(|_| playing.stale) else { return Ok(()) };
         if playing.playing {
-            loaded.session.start_frame(playing.received)?;
+            loaded.prepare(playing.received)?;
         }
         let simpler = draft.then_some(playing.drafts.now);
         let (drawn, seconds) = self.clock.timed(|| loaded.session.draw(simpler));
@@ -300,8 +297,11 @@ impl DrawingThread {
     /// Takes a result of the simulation: a setting that was refused is reported, a device that failed ends it.
     fn take(&self, playing: &mut Playing) -> Result<(), Error> {
         let Some(loaded) = &mut playing.scene else { return Ok(()) };
-        match loaded.session.take() {
-            Ok(is_frame) => playing.is_frame |= is_frame,
+        match loaded.take(self.clock.now()) {
+            Ok((is_frame, note)) => {
+                playing.is_frame |= is_frame;
+                note.into_iter().for_each(|note| self.emit(LiveEvent::Note(note)));
+            }
             Err(Error::Sim(error)) if error.gpu().is_none() => self.emit(Error::from(error).into()),
             Err(error) => return Err(error),
         }
@@ -326,7 +326,8 @@ impl DrawingThread {
     }
 
     fn show(&self, playing: &mut Playing, picture: Picture, drawing: FrameReport) {
-        let Some(Loaded { session, .. }) = playing.scene.as_deref() else { return };
+        let Some(loaded) = playing.scene.as_deref() else { return };
+        let session = &loaded.session;
         playing.frame += 1;
         let shown = Shown {
             picture,
@@ -337,6 +338,7 @@ impl DrawingThread {
             recorded: playing.recorder.as_ref().map(|recorder| recorder.frames),
             camera: Some(*session.view().camera()),
             follows_camera: session.follows_camera(),
+            timeline: loaded.timeline.shown(loaded.rate()),
             drawing,
             step: playing.step.take(),
             grabbed: session.grabbed(),
@@ -351,7 +353,7 @@ impl DrawingThread {
         (self.wake)();
     }
 
-    fn emit(&self, event: LiveEvent) {
+    pub(super) fn emit(&self, event: LiveEvent) {
         self.out.lock().unwrap_or_else(PoisonError::into_inner).events.push_back(event);
         (self.wake)();
     }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use strandline_base::WholeFile;
 
+use super::timeline::Timeline;
 use crate::{
     Error, Prepared, Scene, Sources,
     session::worker::Worker,
@@ -16,6 +17,10 @@ pub(super) struct Loaded {
     pub session: Session<Worker<Simulation>>,
     /// Notes for a person.
     pub notes: Vec<String>,
+    /// The frames that are kept.
+    pub timeline: Timeline,
+    /// True where the hair goes back to its beginning with the tasks that were started.
+    pub(super) resets: bool,
 }
 
 impl Loaded {
@@ -26,7 +31,15 @@ impl Loaded {
         session.settle()?;
         notes.extend(session.take_notes());
         session.follow_camera();
-        Ok(Self { session: session.beside()?, notes })
+        let mut session = session.beside()?;
+        session.keep_frames();
+        let film = session.scene().film;
+        let last = film.frames - u32::from(session.scene().groom.pose.is_some());
+        let timeline = Timeline::new(&session.scene().timeline, last);
+        let mut loaded = Self { session, notes, timeline, resets: false };
+        let note = loaded.begin()?;
+        loaded.notes.extend(note);
+        Ok(loaded)
     }
 
     /// Saves a scene that begins with the hair as it is, and with the motion at the time that it is at; all
@@ -35,6 +48,10 @@ impl Loaded {
     /// # Errors
     /// A file cannot be written; then what was there before stays, unless only the last renaming fails.
     pub fn save(&mut self, mut scene: Scene, path: &Path) -> Result<(), Error> {
+        self.come_to_playhead()?;
+        while self.session.started() > 0 {
+            self.session.take()?;
+        }
         let pose_path = pose_path(path);
         let pose = self.session.with(Simulation::hair_pose)?.write(&pose_path)?;
         scene.film.start = self.session.time_shown();

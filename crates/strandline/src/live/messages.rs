@@ -3,8 +3,9 @@
 use std::collections::VecDeque;
 use std::path::PathBuf;
 
+use super::timeline::{Pace, TimelineShown};
 use crate::{
-    Error, ErrorKind, Scene, Sources,
+    Error, ErrorKind, OutSettings, Scene, Sources, Written,
     body::Aabb,
     render::{Camera, FrameReport, Picture},
     session::Change,
@@ -21,6 +22,15 @@ pub enum Command {
     Play(bool),
     /// One frame, while it stands still.
     Step,
+    /// Shows the kept frame of the timeline that is nearest to this one; nothing is simulated.
+    Seek(u32),
+    /// The part of the timeline that is played, its first and last frame, where the film's are not, and whether the first
+    /// follows the last.
+    Range([Option<u32>; 2], bool),
+    /// Pace at which frames follow each other; every frame as soon as it is there to begin with.
+    Pace(Pace),
+    /// Writes kept frames of a scene, the first to the last, to a file without simulating them again.
+    Export(Box<Scene>, OutSettings, [u32; 2]),
     /// A change of what plays.
     Change(Change),
     /// Saves a scene as TOML, after all commands before it: `groom.pose` names a file beside it with the
@@ -31,7 +41,7 @@ pub enum Command {
     /// 80 ms; off to begin with. What stands still is drawn in full after a moment.
     Adapt(bool),
     /// Writes every frame from the next one on, in full, to a folder: as pictures and a video. Frames are
-    /// 1/60 s of the hair's time apart, however long they take. The size of the pictures stays.
+    /// those of the timeline, however long they take. The size of the pictures stays.
     Record(PathBuf),
     /// Finishes the video.
     StopRecording,
@@ -63,6 +73,8 @@ pub struct Shown {
     pub camera: Option<Camera>,
     /// True where the view follows the keyframes of the camera.
     pub follows_camera: bool,
+    /// The frames that are kept, and the one that is shown.
+    pub timeline: TimelineShown,
     /// Cost of the picture.
     pub drawing: FrameReport,
     /// The last step that was not reported before.
@@ -93,6 +105,8 @@ pub enum LiveEvent {
     Saved(PathBuf),
     /// The video is over.
     Recorded,
+    /// Kept frames are written.
+    Exported(Written),
 }
 
 impl From<Error> for LiveEvent {

@@ -2,10 +2,14 @@
 
 mod clock;
 mod drawing_thread;
+mod export;
+mod films;
+mod keeping;
 mod loaded;
 mod messages;
 mod playing;
 mod recorder;
+mod timeline;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Sender, channel};
@@ -14,6 +18,7 @@ use std::thread::JoinHandle;
 
 pub use clock::LiveClock;
 pub use messages::{Command, LiveEvent, Shown};
+pub use timeline::{Pace, TimelineShown};
 
 use drawing_thread::{DrawingThread, Message};
 use messages::Out;

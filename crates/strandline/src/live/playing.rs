@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use super::loaded::Loaded;
 use super::recorder::Recorder;
+use super::timeline::Range;
 use crate::{
     render::PictureSettings,
     session::{Change, Draft},
@@ -80,6 +81,8 @@ pub(super) struct Playing {
     pub finishing: Vec<JoinHandle<()>>,
     /// Callers that wait until nothing is left to do.
     pub idlers: Vec<Sender<()>>,
+    /// The part of the timeline that is played, for the next scene too.
+    pub range: Range,
 }
 
 impl Playing {
@@ -105,6 +108,7 @@ impl Playing {
         film: 0,
         finishing: Vec::new(),
         idlers: Vec::new(),
+        range: Range::START,
     };
 
     /// Notes how long \[s\] a picture took.
@@ -123,15 +127,29 @@ impl Playing {
 
     /// True where only time brings further work.
     pub fn is_idle(&self) -> bool {
-        self.loading == 0 && !self.patience().is_zero()
+        let works = self.playing || self.steps > 0 || self.stale;
+        self.loading == 0 && !(works && self.scene.is_some())
     }
 
-    /// Time to wait for a message before the next frame.
-    pub fn patience(&self) -> Duration {
+    /// Plays from a time of the clock on. Steps that were asked for before are among the frames it plays.
+    pub fn play(&mut self, now: Duration) {
+        (self.playing, self.steps) = (true, 0);
+        self.set_range(|range| range.due = now);
+    }
+
+    /// Changes the part of the timeline that is played.
+    pub fn set_range(&mut self, change: impl Fn(&mut Range)) {
+        change(&mut self.range);
+        self.scene.iter_mut().for_each(|loaded| change(&mut loaded.timeline.range));
+    }
+
+    /// Time to wait for a message before the next frame, at a time of the clock.
+    pub fn patience(&self, now: Duration) -> Duration {
         // Every message wakes it.
         const LONG: Duration = Duration::from_secs(3600);
-        match self.scene {
-            Some(_) if self.playing || self.steps > 0 || self.stale => Duration::ZERO,
+        match &self.scene {
+            Some(_) if self.steps > 0 || self.stale => Duration::ZERO,
+            Some(loaded) if self.playing => loaded.timeline.range.wait(now),
             Some(_) if self.draft => MOMENT,
             _ => LONG,
         }

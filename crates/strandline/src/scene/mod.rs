@@ -15,6 +15,7 @@ mod motion;
 pub(crate) mod origin;
 pub(crate) mod solid_motion;
 mod surroundings;
+mod timeline;
 
 use std::path::{Path, PathBuf};
 
@@ -33,6 +34,7 @@ pub use groom::{GroomPart, GroomSection, TieSection};
 pub use head::HeadMotion;
 pub use motion::{KeyframeSection, MotionName, MotionSection, WindKeyframe, WindSection, WindSource};
 pub use surroundings::SurroundingsSection;
+pub use timeline::TimelineSection;
 
 pub use crate::body::Interpolation;
 use crate::{
@@ -89,6 +91,8 @@ settings! {
         picture: PictureSettings = PictureSettings::default();
         /// Number and rate of the pictures.
         film: FilmSection = FilmSection::default();
+        /// Frames that a window keeps.
+        timeline: TimelineSection = TimelineSection::default();
         plain {
             /// The folder that relative paths start from; not part of the file.
             folder: PathBuf,

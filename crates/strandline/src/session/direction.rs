@@ -1,18 +1,22 @@
 //! Direction of playing hair by the user: head, wind and hand.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 use strandline_base::Group;
 
-use super::job::Live;
+use super::job::{Live, Weather};
 use crate::{
     Error, HeadMotion, Scene,
     scene::{MotionName, MotionSection, WindSection},
 };
 
-/// Time that passes in a frame \[s\].
-pub(crate) const FRAME: f64 = 1.0 / 60.0;
-/// Steps of a frame at most, so that a window stays awake: with steps shorter than that time slows down.
-pub(crate) const MOST_STEPS: f64 = 16.0;
+/// Frames of a second in a loop of the host.
+const RATE: f64 = 60.0;
+/// Steps of a frame of such a loop at most, so that it stays awake: with steps shorter than that time slows down.
+const MOST_STEPS: f64 = 16.0;
+/// A time that is this part of a frame away from one is that frame.
+const SLACK: f64 = 1e-6;
 
 /// Direction of playing hair by the user.
 pub(crate) struct Direction {
@@ -21,11 +25,18 @@ pub(crate) struct Direction {
     /// The motion of the head, in the world and seen from the origin of the simulation.
     pub head: HeadMotion,
     pub head_from_origin: HeadMotion,
-    /// Time of motion and wind \[s\], at their beginning and at the end of the last frame that was taken.
+    /// Head and wind of the next frames; `None` after a change of either.
+    weather: Option<Arc<Weather>>,
+    /// Frames of a second, and the most steps of one.
+    rate: f64,
+    most_steps: f64,
+    /// Time of motion and wind at their beginning \[s\].
     begun: f64,
-    time: f64,
-    /// True if the frame on its way advances that time: not after a return to the beginning.
-    counts: bool,
+    /// Time of the clock at the end of the last frame that was taken \[s\], and the time of the motion when it is 0.
+    pub time: f64,
+    offset: f64,
+    /// True where the motion begins with the next frame.
+    begins: bool,
     /// Position of the hand that holds hair \[m\], world space.
     pub hand: Option<Vec3>,
 }
@@ -36,31 +47,50 @@ impl Direction {
         let start = scene.film.start;
         let (wind, motion) = (scene.wind.clone(), scene.motion.clone());
         let head = head_from_origin.seen_from(Vec3::ZERO);
-        Self { wind, motion, head, head_from_origin, begun: start, time: start, counts: true, hand: None }
+        Self { wind, motion, head, head_from_origin, begun: start, offset: start, ..Self::default() }
+    }
+
+    /// Makes frames those of a film.
+    pub fn film(&mut self, frames_per_second: f64) {
+        (self.rate, self.most_steps) = (frames_per_second, f64::INFINITY);
     }
 
     /// Drive of the next frame.
     pub fn next(&mut self) -> Live {
-        self.counts = true;
-        let (head, wind) = (self.head_from_origin.clone(), self.wind.clone());
-        Live { begin: self.time, seconds: FRAME, most_steps: MOST_STEPS, head, wind, hand: self.hand }
-    }
-
-    /// Moves on by the time of a frame \[s\].
-    pub fn pass(&mut self, seconds: f64) {
-        if self.counts {
-            self.time += seconds;
+        if std::mem::take(&mut self.begins) {
+            self.offset = -self.time;
         }
+        let weather = self.weather.take().unwrap_or_else(|| {
+            Arc::new(Weather { head: self.head_from_origin.clone(), wind: self.wind.clone() })
+        });
+        self.weather = Some(weather.clone());
+        let (frames, offset) = (self.time * self.rate, self.offset);
+        let on_time = (frames - frames.round()).abs() < SLACK;
+        // Times of frames are those of a film, to the bit.
+        let until = if on_time { (frames.round() + 1.0) / self.rate } else { self.time + 1.0 / self.rate };
+        Live { until, offset, most_steps: self.most_steps, weather, hand: self.hand }
     }
 
     /// Goes back to the beginning.
     pub fn reset(&mut self) {
-        (self.hand, self.begun, self.time, self.counts) = (None, 0.0, 0.0, false);
+        (self.hand, self.begun, self.offset, self.begins) = (None, 0.0, 0.0, false);
+        self.time = 0.0;
+    }
+
+    /// Goes to a time of the clock \[s\]; a motion that began later begins there.
+    pub fn go_to(&mut self, time: f64) {
+        (self.hand, self.time) = (None, time);
+        self.begins |= time + self.offset < self.begun - SLACK;
     }
 
     /// Time at which a film begins with what is shown \[s\], which lies `delay` \[s\] behind the end of a frame.
     pub fn time_shown(&self, delay: f64) -> f64 {
-        (self.time - delay).max(self.begun)
+        if self.begins { self.begun } else { self.motion_time(self.time - delay) }
+    }
+
+    /// Time of the motion \[s\] at one of the clock.
+    pub fn motion_time(&self, time: f64) -> f64 {
+        (time + self.offset).max(self.begun)
     }
 
     /// Another motion of the head begins at its beginning; another turn does not disturb it.
@@ -75,9 +105,19 @@ impl Direction {
         self.head = head.with_body(body).with_recorded(recorded).with_solids(solids).with_neck(neck);
         self.head_from_origin = self.head.seen_from(self.head_from_origin.origin());
         if (motion.name, &motion.keyframes) != (self.motion.name, &self.motion.keyframes) {
-            (self.begun, self.time, self.counts) = (0.0, 0.0, false);
+            (self.begun, self.begins) = (0.0, true);
         }
-        self.motion = motion;
+        (self.motion, self.weather) = (motion, None);
+        Ok(())
+    }
+
+    /// Another wind.
+    ///
+    /// # Errors
+    /// A setting outside its range.
+    pub fn set_wind(&mut self, wind: WindSection) -> Result<(), Error> {
+        wind.check_as("wind")?;
+        (self.wind, self.weather) = (wind, None);
         Ok(())
     }
 }
@@ -85,9 +125,19 @@ impl Direction {
 impl Default for Direction {
     /// A head and air that rest.
     fn default() -> Self {
-        let motion = MotionSection { name: MotionName::Still, ..MotionSection::default() };
-        let wind = WindSection::default();
-        let [head, head_from_origin] = [HeadMotion::still(), HeadMotion::still()];
-        Self { wind, motion, head, head_from_origin, begun: 0.0, time: 0.0, counts: true, hand: None }
+        Self {
+            wind: WindSection::default(),
+            motion: MotionSection { name: MotionName::Still, ..MotionSection::default() },
+            head: HeadMotion::still(),
+            head_from_origin: HeadMotion::still(),
+            weather: None,
+            rate: RATE,
+            most_steps: MOST_STEPS,
+            begun: 0.0,
+            time: 0.0,
+            offset: 0.0,
+            begins: false,
+            hand: None,
+        }
     }
 }

@@ -4,7 +4,7 @@ use strandline_base::counted;
 
 use super::{Executor, Session, resuming};
 use crate::{
-    Cache, Error, OutSettings, What, Written,
+    Cache, Error, OutSettings, Scene, What, Written,
     body::BodyFrame,
     cache::{Leaving, Out, Snapshot},
     sim::StepReport,
@@ -16,9 +16,22 @@ impl<E: Executor> Session<E> {
     /// # Errors
     /// A name that no format has; a file or folder that cannot be written; more points than a file may have.
     pub fn begin_file(&self, settings: &OutSettings, body: &BodyFrame) -> Result<Out, Error> {
+        self.begin_file_of(&self.scene, settings, body)
+    }
+
+    /// As [`Session::begin_file`], for the film of a scene that was changed since.
+    ///
+    /// # Errors
+    /// As [`Session::begin_file`].
+    pub fn begin_file_of(
+        &self,
+        scene: &Scene,
+        settings: &OutSettings,
+        body: &BodyFrame,
+    ) -> Result<Out, Error> {
         let (view, tags) = (&self.view, &self.tags);
         let leaving = Leaving { guides: &view.guides, bound: view.painter.bound(), tags, body };
-        Out::new(settings, &self.scene, leaving)
+        Out::new(settings, scene, leaving)
     }
 
     /// Adds the shown moment as a frame of the film, where the file takes that frame. The host has its points. `state` is

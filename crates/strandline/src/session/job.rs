@@ -1,10 +1,10 @@
 //! Tasks of a simulation, as data, and the executors that perform them: on the thread of the caller or beside it.
 
 use glam::Vec3;
-use std::collections::VecDeque;
+use std::{collections::VecDeque, sync::Arc};
 use strandline_gpu::Gpu;
 
-use super::{film_timing::FilmTiming, moment::Moment, simulation::Simulation};
+use super::{bookmark::Bookmark, film_timing::FilmTiming, moment::Moment, simulation::Simulation};
 use crate::{
     HeadMotion,
     body::{BodyFrame, Pose},
@@ -16,6 +16,7 @@ use crate::{
 };
 
 /// A task of a simulation.
+#[derive(Clone)]
 pub(crate) enum Task {
     /// The frame of a film with this number, with settings that change before it.
     Film { timing: FilmTiming, frame: u32, settings: Option<Box<Settings>> },
@@ -35,14 +36,20 @@ pub(crate) enum Task {
     Release,
 }
 
-/// A stretch of time that a person directs.
-pub(crate) struct Live {
-    /// Begin \[s\] in the time of motion and wind, duration \[s\], and the most steps.
-    pub begin: f64,
-    pub seconds: f64,
-    pub most_steps: f64,
+/// Motion of the head and of the air.
+pub(crate) struct Weather {
     pub head: HeadMotion,
     pub wind: WindSection,
+}
+
+/// A stretch of time that a person directs.
+#[derive(Clone)]
+pub(crate) struct Live {
+    /// Time of the clock at its end \[s\], the time of motion and wind when that of the clock is 0, and the most steps.
+    pub until: f64,
+    pub offset: f64,
+    pub most_steps: f64,
+    pub weather: Arc<Weather>,
     /// Target of the hand \[m\], world space.
     pub hand: Option<Vec3>,
 }
@@ -53,7 +60,7 @@ impl Task {
         matches!(self, Self::Film { .. } | Self::Cached { .. } | Self::Live(_))
     }
 
-    fn perform(self, simulation: &mut Simulation) -> Result<Vec<StepReport>, SimError> {
+    pub fn perform(self, simulation: &mut Simulation) -> Result<Vec<StepReport>, SimError> {
         let done = match self {
             Self::Film { timing, frame, settings } => {
                 settings.map_or(Ok(()), |settings| simulation.set_settings(&settings))?;
@@ -77,17 +84,20 @@ impl Task {
 }
 
 impl Live {
+    /// As in a film, motion and wind are asked for at times of steps, never of frames.
     fn run(self, simulation: &mut Simulation) -> Result<Vec<StepReport>, SimError> {
-        let start = simulation.end().clone();
-        self.hand.into_iter().for_each(|hand| simulation.move_hand(hand));
-        let seconds = self.seconds.min(self.most_steps * simulation.time_step());
+        let Self { offset, hand, .. } = self;
+        let Weather { head, wind } = &*self.weather;
+        let (start, begin) = (simulation.end().clone(), simulation.clock.time());
+        hand.into_iter().for_each(|hand| simulation.move_hand(hand));
+        let until = self.until.min(begin + self.most_steps * simulation.time_step());
         // A head that was turned by hand meanwhile goes straight to where its motion has it.
-        let follows = is_near(&start.world_from_head(), &self.head.pose(self.begin));
-        let end = self.head.frame(self.begin + seconds);
-        simulation.step_along(seconds, &|share| {
-            let time = self.begin + seconds * f64::from(share);
-            let body = if follows { self.head.frame(time) } else { start.toward(&end, share) };
-            (body, self.wind.air(time, self.head.origin()))
+        let follows = is_near(&start.world_from_head(), &head.pose(begin + offset));
+        let end = head.frame(until + offset);
+        simulation.run_to(until, &|time| {
+            let share = ((time - begin) / (until - begin)).clamp(0.0, 1.0) as f32;
+            let body = if follows { head.frame(time + offset) } else { start.toward(&end, share) };
+            (body, wind.air(time + offset, head.origin()))
         })
     }
 }
@@ -107,6 +117,8 @@ pub(crate) struct Job {
     pub home: bool,
     /// Commands that were received before.
     pub commands: u64,
+    /// True where the simulation may go back to the end of the job.
+    pub marks: bool,
 }
 
 /// Result of a job; after a failure the moment is that of the last state.
@@ -114,8 +126,10 @@ pub(crate) struct Done {
     pub moment: Moment,
     pub reports: Result<Vec<StepReport>, SimError>,
     pub notes: Vec<String>,
-    /// Time that passed \[s\].
-    pub seconds: f64,
+    /// Time of the clock \[s\].
+    pub time: f64,
+    /// The simulation at its end, where that was wanted and no hand holds hair.
+    pub bookmark: Option<Bookmark>,
     /// Time by which the moment lies behind the end of the last run \[s\].
     pub delay: f64,
     /// Strands in the hand.
@@ -133,10 +147,9 @@ impl Work for Simulation {
     type Done = Done;
 
     fn run(&mut self, job: Job) -> Done {
-        let Job { task, mut moment, gpu, home, commands } = job;
+        let Job { task, mut moment, gpu, home, commands, marks } = job;
         let is_frame = task.is_frame();
         let threads = self.threads.take();
-        let before = self.passed;
         let run = || {
             let reports = task.perform(self);
             let mut shown = self.show(gpu.as_ref(), &mut moment);
@@ -151,10 +164,23 @@ impl Work for Simulation {
         };
         self.threads = threads;
         let simulated_on = device_name(self.engine.gpu());
-        let (seconds, grabbed) = (self.passed - before, self.engine.grabbed());
+        let (time, grabbed) = (self.clock.time(), self.engine.grabbed());
+        let bookmark = if marks && grabbed == 0 { self.bookmark().ok() } else { None };
         let notes = self.engine.take_notes();
         let (stiffening, delay) = (self.stiffening(), self.delay());
-        Done { moment, reports, notes, seconds, delay, grabbed, is_frame, commands, simulated_on, stiffening }
+        Done {
+            moment,
+            reports,
+            time,
+            bookmark,
+            notes,
+            delay,
+            grabbed,
+            is_frame,
+            commands,
+            simulated_on,
+            stiffening,
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! A session: hair that moves and is drawn. Commands, which are data, go in; events come out. `Hair`, `Player` and
 //! `Live` are its faces.
 
+mod bookmark;
 mod change;
 mod direction;
 mod draft;
@@ -13,6 +14,8 @@ pub(crate) mod film_timing;
 mod following;
 mod job;
 mod jump;
+mod keeping;
+mod kept;
 pub(crate) mod moment;
 mod open;
 mod painter;
@@ -28,11 +31,12 @@ pub(crate) mod worker;
 #[cfg(test)]
 mod worker_tests;
 
+pub(crate) use bookmark::Bookmark;
 pub use change::Change;
-pub(crate) use direction::FRAME;
 pub(crate) use draft::Draft;
 pub use event::Event;
-pub(crate) use job::{Executor, Inline, Task};
+pub(crate) use job::{Executor, Inline, Live, Task};
+pub(crate) use kept::Held;
 pub use pick::Ray;
 pub(crate) use simulation::Simulation;
 pub(crate) use view::View;
@@ -40,7 +44,6 @@ pub(crate) use view::View;
 use std::collections::VecDeque;
 
 use glam::Vec3;
-use strandline_base::Group;
 
 use crate::{
     Error, HeadMotion, Scene,
@@ -51,7 +54,8 @@ use crate::{
 };
 use direction::Direction;
 use draft::simplified;
-use job::{Done, Job};
+use job::Done;
+use kept::Kept;
 use moment::Moment;
 
 /// A simulation, its renderer, and the commands between them.
@@ -83,6 +87,7 @@ pub(crate) struct Session<E> {
     events: VecDeque<Event>,
     /// Pictures drawn so far.
     drawn: u32,
+    kept: Kept,
 }
 
 impl<E: Executor> Session<E> {
@@ -152,8 +157,7 @@ impl<E: Executor> Session<E> {
     /// # Errors
     /// The simulation's thread has ended.
     pub fn start(&mut self, task: Task, home: bool, commands: u64) -> Result<(), Error> {
-        let (gpu, moment) = (self.view.painter.gpu().cloned(), self.spare.pop().unwrap_or_default());
-        self.executor.start(Job { task, moment, gpu, home, commands }).map_err(|_| Error::WorkerGone)
+        self.start_marked(task, home, commands, false)
     }
 
     /// Starts the next frame under the direction of a person.
@@ -171,10 +175,10 @@ impl<E: Executor> Session<E> {
     /// The error of the task; the simulation's thread has ended.
     pub fn take(&mut self) -> Result<bool, Error> {
         let done = self.executor.finish().map_err(|_| Error::WorkerGone)?;
-        let Done { moment, reports, notes, seconds, delay, grabbed, .. } = done;
-        let Done { is_frame, commands, simulated_on, stiffening, .. } = done;
+        let Done { moment, reports, notes, time, delay, grabbed, .. } = done;
+        let Done { is_frame, commands, simulated_on, stiffening, bookmark, .. } = done;
+        (self.direction.time, self.kept.bookmark) = (time, bookmark);
         if is_frame {
-            self.direction.pass(seconds);
             self.look_along(delay);
         }
         (self.simulated_on, self.grabbed, self.stiffening) = (simulated_on, grabbed, stiffening);
@@ -260,7 +264,7 @@ impl<E: Executor> Session<E> {
             }
             Change::LevelOfDetail(level) => level.validate().map(|()| view.level_of_detail = level)?,
             Change::Picture(settings) => self.set_picture(settings)?,
-            Change::Wind(wind) => wind.check_as("wind").map(|()| self.direction.wind = wind)?,
+            Change::Wind(wind) => self.direction.set_wind(wind)?,
             Change::Motion(motion) => self.direction.set_motion(*motion)?,
             Change::Drag(ray) => {
                 let hand = &mut self.direction.hand;
@@ -268,11 +272,8 @@ impl<E: Executor> Session<E> {
             }
             Change::Grab(ray, radius) => self.grab(&ray, radius)?,
             Change::Release => self.release()?,
-            Change::Settings(settings) => self.start(Task::Settings(settings), false, 0)?,
-            Change::Length(scale) => {
-                let scales = vec![scale; self.view.guides.strand_count()];
-                self.start(Task::Lengths(scales), false, 0)?;
-            }
+            Change::Settings(settings) => self.set_settings(settings)?,
+            Change::Length(scale) => self.set_length(scale)?,
             Change::Reset => {
                 self.direction.reset();
                 let body = self.direction.head_from_origin.frame(0.0);

@@ -65,6 +65,14 @@ impl Moment {
         Ok(())
     }
 
+    /// Takes points that were kept, and their body; none lie on a device then.
+    pub fn hold(&mut self, positions: &[Vec3Lanes], body: &BodyFrame, origin: Vec3) {
+        self.positions.clear();
+        self.positions.extend_from_slice(positions);
+        (self.on_host, self.device, self.between) = (true, None, None);
+        (self.body, self.origin) = (body.clone(), origin);
+    }
+
     /// Takes the points of a state; none lie on a device then.
     pub fn fill(&mut self, state: &State) {
         match &self.between {

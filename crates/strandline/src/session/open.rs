@@ -6,7 +6,7 @@ use glam::Vec3;
 use strandline_base::{Group, par::Pool};
 
 use super::{
-    Inline, Session, Simulation, View, direction::Direction, engine::Engine, moment::Moment,
+    Inline, Session, Simulation, View, direction::Direction, engine::Engine, kept::Kept, moment::Moment,
     simulation::with_hairs,
 };
 use crate::{
@@ -88,6 +88,7 @@ impl Session<Inline> {
             points: Vec::new(),
             events: VecDeque::new(),
             drawn: 0,
+            kept: Kept::default(),
         })
     }
 
@@ -160,6 +161,7 @@ impl Session<Inline> {
             points: self.points,
             events: self.events,
             drawn: self.drawn,
+            kept: self.kept,
         })
     }
 

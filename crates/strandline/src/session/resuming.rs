@@ -18,7 +18,7 @@ const FIXED: [&str; 9] = [
     "film.settle",
 ];
 /// Settings that do not change how hair moves, in part or whole.
-const FREE: [&str; 10] = [
+const FREE: [&str; 11] = [
     "film.frames",
     "devices",
     "picture",
@@ -28,6 +28,7 @@ const FREE: [&str; 10] = [
     "camera",
     "surroundings",
     "level_of_detail",
+    "timeline",
     "body.visible",
 ];
 

@@ -43,21 +43,21 @@ const MOST_STEPS: u32 = 1_000_000;
 /// A simulation in time: steps of fixed length, and the moment between two of them that is shown.
 pub(crate) struct Simulation {
     pub(super) engine: Engine,
-    clock: Clock,
+    pub(super) clock: Clock,
     /// Place of the moment between the last two states.
-    share: f32,
+    pub(super) share: f32,
     /// Body of the moment, where it is known better than from the last two steps.
-    exact: Option<BodyFrame>,
+    pub(super) exact: Option<BodyFrame>,
     /// Body at the last two states, and at the end of the last run.
-    bodies: [BodyFrame; 2],
-    end: BodyFrame,
+    pub(super) bodies: [BodyFrame; 2],
+    pub(super) end: BodyFrame,
     /// Time \[s\] of all runs that went well.
     pub passed: f64,
     /// Origin of all places here \[m\], world space, in whole metres: single precision is exact beside it. Places in the
     /// world become those here as they enter, and the other way round as they leave.
     pub origin: Vec3,
     /// Position of the hand that holds hair, and its target in the next run \[m\]; `None` without one.
-    hand: Option<[Vec3; 2]>,
+    pub(super) hand: Option<[Vec3; 2]>,
     /// Roots that the skin carries.
     pub skin: SkinCarrier,
     /// Hairs that a guide stands for in the air where the settings do not tell.

@@ -45,8 +45,8 @@ fn a_video_is_recorded_frame_by_frame_and_finished_when_it_is_left() {
     let frames = files("steps").iter().filter(|name| name.starts_with("frame_")).count();
     assert_eq!(frames, 3);
     let start = Scene::load(&folder.path().join("saved.toml")).unwrap().film.start;
-    // Three frames.
-    assert!((start - 3.0 / 60.0).abs() < 1e-6, "{start}");
+    // Three frames of a film.
+    assert!((start - 3.0 / 30.0).abs() < 1e-6, "{start}");
     // An unwritable folder is reported, and it plays on.
     let live = Live::new(scene(), waking()).unwrap();
     std::fs::write(folder.path().join("file"), b"x").unwrap();

@@ -1,0 +1,155 @@
+//! Undo and redo of what the scene holds, and panels that go back to what they were.
+
+use eframe::egui::{self, Ui};
+use strandline::{Change, Scene, edit::changes};
+
+use crate::{App, controls::button};
+
+/// A part of a scene that a panel changes.
+#[derive(Clone, Copy)]
+pub enum Part {
+    Motion,
+    Simulation,
+    Look,
+    Lights,
+    Detail,
+}
+
+impl Part {
+    /// A scene with this part of another.
+    fn of(self, scene: &Scene, other: &Scene) -> Scene {
+        let mut scene = scene.clone();
+        match self {
+            Self::Motion => {
+                scene.motion.clone_from(&other.motion);
+                scene.wind.clone_from(&other.wind);
+                scene.groom.length = other.groom.length;
+            }
+            Self::Simulation => scene.simulation.clone_from(&other.simulation),
+            Self::Look => scene.look.clone_from(&other.look),
+            Self::Lights => {
+                scene.lights.clone_from(&other.lights);
+                scene.body_look = other.body_look;
+            }
+            Self::Detail => {
+                scene.level_of_detail = other.level_of_detail;
+                scene.picture = other.picture;
+            }
+        }
+        scene
+    }
+}
+
+impl App {
+    /// Records what was changed as a step, once the mouse lets go: a drag is one step.
+    pub(crate) fn remember(&mut self, ui: &Ui) {
+        if !ui.input(|input| input.pointer.any_down()) {
+            self.remember_now();
+        }
+    }
+
+    pub(crate) fn remember_now(&mut self) {
+        if !self.loads_first && !self.restoring {
+            self.history.record(&self.scene);
+        }
+    }
+
+    /// Undoes the last step.
+    pub fn undo(&mut self) {
+        self.remember_now();
+        let name = self.history.done().checked_sub(1).map(|last| self.history.steps()[last].name.clone());
+        match (self.history.undo().cloned(), name) {
+            (Some(scene), Some(name)) => {
+                self.restore(scene);
+                self.note(format!("undone: {name}"));
+            }
+            _ => self.note("nothing to undo".to_owned()),
+        }
+    }
+
+    /// Does the step again that was undone last.
+    pub fn redo(&mut self) {
+        self.remember_now();
+        match self.history.redo().cloned() {
+            Some(scene) => self.restore(scene),
+            None => self.note("nothing to do again".to_owned()),
+        }
+    }
+
+    /// Goes to where so many steps are done.
+    fn go_to(&mut self, done: usize) {
+        if let Some(scene) = self.history.go_to(done).cloned() {
+            self.restore(scene);
+        }
+    }
+
+    /// Brings the hair that plays to a scene: by changes, or by loading it.
+    pub(crate) fn restore(&mut self, mut scene: Scene) {
+        (scene.picture.width, scene.picture.height) = (self.scene.picture.width, self.scene.picture.height);
+        let Some(changes) = changes(&self.scene, &scene) else {
+            self.restoring = true;
+            return self.load(scene);
+        };
+        self.scene = scene;
+        for change in changes {
+            match change {
+                Change::Picture(_) => self.send_picture(),
+                other => {
+                    self.live.send(other);
+                }
+            }
+        }
+    }
+
+    /// Sets a part of the scene to that of another.
+    pub(crate) fn reset_part(&mut self, part: Part, to: &Scene) {
+        let scene = part.of(&self.scene, to);
+        self.restore(scene);
+    }
+}
+
+/// Buttons that set a panel back: to before its last change, and to the scene as it was loaded.
+pub fn resets(app: &mut App, ui: &mut Ui, part: Part) {
+    let before = |scene: &Scene, other: &Scene| part.of(scene, other) != *scene;
+    ui.horizontal(|ui| {
+        if button(ui, "before", "sets this panel back to before its last change")
+            && let Some(scene) = app.history.before(before).cloned()
+        {
+            app.reset_part(part, &scene);
+        }
+        if button(ui, "default", "sets this panel back to the scene as it was loaded") {
+            let base = app.base.clone();
+            app.reset_part(part, &base);
+        }
+    });
+}
+
+/// The list of steps, the last first; those that are undone are grey.
+pub fn show(app: &mut App, ui: &mut Ui) {
+    ui.horizontal(|ui| {
+        if button(ui, "Undo", "the last step: ctrl Z") {
+            app.undo();
+        }
+        if button(ui, "Redo", "the step that was undone last: ctrl shift Z") {
+            app.redo();
+        }
+    });
+    let done = app.history.done();
+    let mut wanted = None;
+    egui::ScrollArea::vertical().id_salt("steps").max_height(140.0).show(ui, |ui| {
+        for (index, step) in app.history.steps().iter().enumerate().rev() {
+            let text = egui::RichText::new(&step.name);
+            let text = if index < done { text } else { text.weak() };
+            let chosen = ui.selectable_label(index + 1 == done, text);
+            if chosen.on_hover_text("goes to where this step is the last").clicked() {
+                wanted = Some(index + 1);
+            }
+        }
+        if ui.selectable_label(done == 0, "beginning").on_hover_text("undoes all steps").clicked() {
+            wanted = Some(0);
+        }
+    });
+    if let Some(done) = wanted {
+        app.go_to(done);
+    }
+}

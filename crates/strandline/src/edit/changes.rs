@@ -1,0 +1,132 @@
+//! Changes that lead from one scene to another.
+
+use toml::{Table, Value};
+
+use crate::{Change, PictureSettings, Scene};
+
+/// The changes of hair that plays which lead from one scene to another; `None` where the other has to be loaded. The size
+/// of the pictures, which is that of a window, stays.
+pub fn changes(from: &Scene, to: &Scene) -> Option<Vec<Change>> {
+    let mut near = from.clone();
+    near.wind.clone_from(&to.wind);
+    near.motion.clone_from(&to.motion);
+    near.simulation.clone_from(&to.simulation);
+    near.look.clone_from(&to.look);
+    near.body_look.clone_from(&to.body_look);
+    near.level_of_detail = to.level_of_detail;
+    near.lights.clone_from(&to.lights);
+    near.groom.length = to.groom.length;
+    near.film.frames = to.film.frames;
+    let PictureSettings { width, height, .. } = from.picture;
+    near.picture = PictureSettings { width, height, ..to.picture };
+    let sized = Scene { picture: near.picture, ..to.clone() };
+    // Maps, groups and the file of a motion are taken in when a scene is loaded.
+    let look = (&from.look.color_map, &from.look.width_map, &from.look.group);
+    let is_near = near == sized
+        && look == (&to.look.color_map, &to.look.width_map, &to.look.group)
+        && from.motion.file == to.motion.file;
+    is_near.then(|| {
+        let mut changes = Vec::new();
+        let mut add = |differs: bool, change: &dyn Fn() -> Change| {
+            if differs {
+                changes.push(change());
+            }
+        };
+        let picture = near.picture;
+        add(from.wind != to.wind, &|| Change::Wind(to.wind.clone()));
+        add(from.motion != to.motion, &|| Change::Motion(Box::new(to.motion.clone())));
+        add(from.simulation != to.simulation, &|| Change::Settings(Box::new(to.simulation.clone())));
+        add(from.look != to.look, &|| Change::Look(Box::new(to.look.clone())));
+        add(from.body_look != to.body_look, &|| Change::BodyLook(to.body_look));
+        add(from.level_of_detail != to.level_of_detail, &|| Change::LevelOfDetail(to.level_of_detail));
+        add(from.lights != to.lights, &|| Change::Lights(to.lights.clone()));
+        add(from.groom.length != to.groom.length, &|| Change::Length(to.groom.length));
+        add(from.picture != picture, &|| Change::Picture(picture));
+        changes
+    })
+}
+
+/// Keys whose values differ between two scenes, and the values of the second as a file has them; nothing where it has none.
+pub fn difference(from: &Scene, to: &Scene) -> Vec<(String, String)> {
+    let table = |scene: &Scene| Table::try_from(scene).unwrap_or_default();
+    let mut found = Vec::new();
+    walk("", &table(from), &table(to), &mut found);
+    found
+}
+
+fn walk(section: &str, from: &Table, to: &Table, found: &mut Vec<(String, String)>) {
+    let gone = from.keys().filter(|key| !to.contains_key(*key));
+    for name in to.keys().chain(gone) {
+        let key = if section.is_empty() { name.clone() } else { format!("{section}.{name}") };
+        match (from.get(name), to.get(name)) {
+            (Some(Value::Table(from)), Some(Value::Table(to))) => walk(&key, from, to, found),
+            (one, other) if one == other => {}
+            (_, Some(Value::Array(items))) if items.iter().any(Value::is_table) => {
+                found.push((key, format!("{} of them", items.len())));
+            }
+            (_, other) => found.push((key, other.map_or_else(String::new, written))),
+        }
+    }
+}
+
+/// A value with no more digits than a person reads.
+fn written(value: &Value) -> String {
+    match value {
+        Value::Float(number) => short(*number),
+        Value::Array(items) => format!("[{}]", items.iter().map(written).collect::<Vec<_>>().join(", ")),
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}
+
+fn short(number: f64) -> String {
+    let text =
+        if number != 0.0 && number.abs() < 1e-3 { format!("{number:.2e}") } else { format!("{number:.4}") };
+    if !text.contains('.') || text.contains('e') {
+        return text;
+    }
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Style;
+
+    #[test]
+    fn what_can_be_changed_while_it_plays_is_and_the_rest_is_loaded() {
+        let from = Scene::demo();
+        assert_eq!(changes(&from, &from).map(|changes| changes.len()), Some(0));
+        let mut to = from.clone();
+        to.look.width_scale = 2.0;
+        to.wind.velocity.x = 3.0;
+        (to.picture.width, to.picture.exposure) = (9, 1.0);
+        let list = changes(&from, &to).unwrap();
+        let PictureSettings { width, .. } = from.picture;
+        assert!(matches!(
+            &list[..],
+            [Change::Wind(_), Change::Look(_), Change::Picture(picture)] if picture.width == width
+        ));
+        let mut other = to.clone();
+        other.set_style(Style::ALL[0]);
+        other.style.strand_count += 1;
+        assert!(changes(&to, &other).is_none());
+        let mut mapped = to.clone();
+        mapped.look.color_map = Some("map.png".into());
+        assert!(changes(&to, &mapped).is_none(), "a map is read when the scene is loaded");
+    }
+
+    #[test]
+    fn differences_have_keys_and_values() {
+        let from = Scene::demo();
+        let mut to = from.clone();
+        to.look.width_scale = 0.3;
+        to.wind.velocity.x = 3.0;
+        to.lights.push(crate::Light::default());
+        let found = difference(&from, &to);
+        let has = |key: &str, value: &str| found.iter().any(|found| *found == (key.into(), value.into()));
+        assert!(has("look.width_scale", "0.3") && has("lights", "1 of them"), "{found:?}");
+        assert!(found.iter().any(|(key, _)| key == "wind.velocity") && found.len() == 3, "{found:?}");
+        assert!(difference(&from, &from).is_empty());
+    }
+}

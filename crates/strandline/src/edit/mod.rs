@@ -1,0 +1,15 @@
+//! Editing of scenes by a person, without a window: undo and redo, looks as files, settings found by name, numbers with
+//! units.
+
+mod changes;
+mod history;
+mod look_file;
+mod search;
+mod units;
+
+pub use changes::{changes, difference};
+pub use history::{History, Step};
+pub use look_file::{is_look, load_look, save_look};
+pub use search::{Found, find, value, with_value};
+pub use toml::Value;
+pub use units::quantity;

@@ -1,0 +1,111 @@
+//! Settings found by words, and changed by their keys.
+
+use strandline_base::{Group, Kind, Row, Table};
+use toml::Value;
+
+use crate::{Error, Scene};
+
+/// A setting that was found.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// Its name in its sections: `simulation.drag.across`.
+    pub key: String,
+    /// Its description.
+    pub row: &'static Row,
+}
+
+/// Settings whose names or sentences have all of these words, those with the words in their names first. Items of lists
+/// are not among them.
+pub fn find(words: &str) -> Vec<Found> {
+    let words: Vec<String> = words.split_whitespace().map(str::to_lowercase).collect();
+    if words.is_empty() {
+        return Vec::new();
+    }
+    let mut all = Vec::new();
+    collect(&Scene::TABLE, "", &mut all);
+    let has = |text: &str| words.iter().all(|word| text.contains(word.as_str()));
+    let named = |found: &Found| has(&found.key.replace('_', " ")) || has(&found.key);
+    let (mut first, rest): (Vec<Found>, Vec<Found>) = all.into_iter().partition(named);
+    first.extend(rest.into_iter().filter(|found| {
+        let text = format!("{} {} {}", found.key.replace('_', " "), found.row.sentence(), found.row.more);
+        has(&text.to_lowercase())
+    }));
+    first
+}
+
+fn collect(table: &Table, section: &str, all: &mut Vec<Found>) {
+    for row in table.rows {
+        let key = if section.is_empty() { row.name.to_owned() } else { format!("{section}.{}", row.name) };
+        match row.kind {
+            Kind::Group(table) => collect(table, &key, all),
+            Kind::List(_) => {}
+            _ => all.push(Found { key, row }),
+        }
+    }
+}
+
+/// The value of a setting, as a file has it; `None` where the scene has none.
+pub fn value(scene: &Scene, key: &str) -> Option<Value> {
+    let table = toml::Table::try_from(scene).ok()?;
+    let mut value = Value::Table(table);
+    for name in key.split('.') {
+        value = value.as_table_mut()?.remove(name)?;
+    }
+    Some(value)
+}
+
+/// The scene with another value of a setting.
+///
+/// # Errors
+/// A key that no setting has; a value of another kind or outside its range.
+pub fn with_value(scene: &Scene, key: &str, value: Value) -> Result<Scene, Error> {
+    let mut table = toml::Table::try_from(scene).unwrap_or_default();
+    let (sections, name) = key.rsplit_once('.').unwrap_or(("", key));
+    let mut at = &mut table;
+    for section in sections.split('.').filter(|section| !section.is_empty()) {
+        let entry = at.entry(section).or_insert_with(|| Value::Table(toml::Table::new()));
+        let Value::Table(inner) = entry else {
+            let message = format!("`{section}` of {key} is no section");
+            return Err(Error::ParseScene { origin: key.to_owned(), message });
+        };
+        at = inner;
+    }
+    at.insert(name.to_owned(), value);
+    let mut changed = Scene::parse(&toml::to_string(&table).unwrap_or_default(), key)?;
+    (changed.folder, changed.given) = (scene.folder.clone(), scene.given);
+    changed.look.surroundings.clone_from(&scene.look.surroundings);
+    Ok(changed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_found_by_name_and_by_sentence() {
+        let keys = |words: &str| find(words).into_iter().map(|found| found.key).collect::<Vec<_>>();
+        assert_eq!(keys("drag across").first().map(String::as_str), Some("simulation.drag.across"));
+        assert!(keys("Turned White").contains(&"look.grey".to_owned()), "{:?}", keys("Turned White"));
+        assert_eq!(keys("look.width_scale").len(), 1);
+        assert!(keys("").is_empty() && keys("no such setting at all").is_empty());
+        assert!(find("e").len() > 100);
+    }
+
+    #[test]
+    fn a_value_is_read_and_set_by_its_key_and_nothing_else_changes() {
+        let scene = Scene::demo();
+        let before = value(&scene, "look.width_scale").unwrap();
+        let changed = with_value(&scene, "look.width_scale", Value::Float(1.25)).unwrap();
+        assert_eq!(changed.look.width_scale, 1.25);
+        assert!(with_value(&changed, "look.width_scale", before).unwrap() == scene);
+        // One that has no value yet.
+        assert_eq!(value(&scene, "camera.field_of_view"), None);
+        let wide = with_value(&scene, "camera.field_of_view", Value::Float(60.0)).unwrap();
+        assert_eq!(wide.camera.field_of_view, Some(60.0));
+        let refused =
+            |key: &str, number| with_value(&scene, key, Value::Float(number)).unwrap_err().to_string();
+        assert!(refused("look.width_scale", -1.0).contains("width_scale"));
+        assert!(refused("look.no_such", 1.0).contains("no_such"));
+        assert!(refused("look.width_scale.more", 1.0).contains("is no section"));
+    }
+}
