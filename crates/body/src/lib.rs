@@ -70,7 +70,7 @@ pub use distance_grid::DistanceGrid;
 pub use error::BodyError;
 pub use frame::BodyFrame;
 pub use keyframes::{Keyframe, Keyframes};
-pub use mannequin::Mannequin;
+pub use mannequin::{Build, Eyes, Mannequin};
 pub use materials::{Material, Materials, Wrap};
 pub use mesh::Mesh;
 pub use mesh_format::MeshFormat;

@@ -186,7 +186,8 @@ fn skin_radius(mannequin: &Mannequin, direction: Vec3) -> f32 {
     radius
 }
 
-fn uv(position: Vec3) -> Vec2 {
+/// Coordinates on the scalp of a place in front of its centre.
+pub(crate) fn uv(position: Vec3) -> Vec2 {
     let arm = (position - CENTER).normalize();
     let back = Vec3::X.cross(CROWN);
     let around = Vec2::new(arm.x, -arm.dot(back)).normalize_or(Vec2::Y);
