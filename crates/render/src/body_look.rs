@@ -15,8 +15,8 @@ settings! {
         /// Light under the skin: how far red light reaches around the edge of shadow beyond `wrap`, green and blue less.
         /// Parts with a colour of their own have none.
         softness: f32 = 0.35, in [0.0, 1.0], more "softer, redder edges of shadow";
-        /// Share of the skin's highlight that oil makes half as wide. Parts with a colour of their own have none.
-        oil: f32 = 0.3, in [0.0, 1.0], more "skin that shines in small, bright places";
+        /// Share of the skin's highlight that oil makes narrower. Parts with a colour of their own have none.
+        oil: f32 = 0.12, in [0.0, 1.0], more "skin that shines in small, bright places";
         /// Reflectance at normal incidence; 0 is no highlight.
         specular: f32 = 0.03, in [0.0, 1.0], more "a brighter highlight";
         /// Width of the highlight, from polished to matt.

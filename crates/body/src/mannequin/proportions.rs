@@ -64,8 +64,8 @@ impl BustShape {
             muscle_reach: 0.0160,
             collar_bone: cone(
                 vec3(0.0150, -0.2080, 0.0165),
-                vec3(0.1240 * aside, -0.1965, -0.0300),
-                [0.0050, 0.0040],
+                vec3(0.1160 * aside, -0.2010, -0.0300),
+                [0.0050, 0.0032],
             ),
             collar_bone_reach: 0.0120,
             throat: throat(),
@@ -170,9 +170,9 @@ fn masses(breadth: f32) -> [Swelling; MASS_COUNT] {
 /// Hollows of the throat: between the collar bones, above them, and the larynx.
 fn throat() -> [Swelling; THROAT_COUNT] {
     [
-        swelling(vec3(0.0000, -0.2030, 0.0220), vec3(0.0200, 0.0190, 0.0280), -0.0042, 0.0),
-        swelling(vec3(0.0550, -0.1870, -0.0080), vec3(0.0420, 0.0200, 0.0340), -0.0034, 0.0),
-        swelling(vec3(0.0000, -0.1480, 0.0260), vec3(0.0120, 0.0190, 0.0200), 0.0022, 0.0),
+        swelling(vec3(0.0000, -0.2030, 0.0220), vec3(0.0210, 0.0200, 0.0280), -0.0026, 0.0),
+        swelling(vec3(0.0550, -0.1870, -0.0080), vec3(0.0440, 0.0230, 0.0340), -0.0024, 0.0),
+        swelling(vec3(0.0000, -0.1480, 0.0260), vec3(0.0130, 0.0210, 0.0200), 0.0010, 0.0),
     ]
 }
 

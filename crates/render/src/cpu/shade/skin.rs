@@ -106,7 +106,7 @@ const TRAVEL: Vec3 = Vec3::new(1.0, GREEN_WAY, BLUE_WAY);
 /// Share of what a penumbra hides that red light, scattered in from beside it, brings back.
 pub(crate) const BLEED: f32 = 0.6;
 /// Width of the highlight of oil over that of the skin.
-pub(crate) const OIL_WIDTH: f32 = 0.5;
+pub(crate) const OIL_WIDTH: f32 = 0.6;
 
 /// Least roughness of a material: the highlight of a smoother one is smaller than a sample.
 pub(crate) const LEAST_ROUGHNESS: f32 = 0.2;
@@ -225,7 +225,7 @@ mod tests {
             let finish = Finish::new(&look, Vec3::ONE, painted);
             highlights(&finish, Vec3::Y, Vec3::Y, Vec3::Y).x
         };
-        assert!(peak(0.5, None) > 1.8 * peak(0.0, None));
+        assert!(peak(0.5, None) > 1.5 * peak(0.0, None));
         let cloth = Painted::of_color(Vec3::splat(0.5));
         assert_eq!(peak(0.5, Some(&cloth)), peak(0.0, Some(&cloth)));
     }
