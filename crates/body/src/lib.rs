@@ -46,6 +46,7 @@ mod posed_skin;
 mod recorded;
 mod rigid_fit;
 mod scalp;
+mod scalp_place;
 mod skin_motion;
 mod skin_roots;
 mod skin_side;

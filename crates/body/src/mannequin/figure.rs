@@ -7,7 +7,7 @@ use super::eyeball::eyeball;
 use super::model::Mannequin;
 use super::surface::settle;
 use super::{paint, refine};
-use crate::scalp::uv;
+use crate::scalp_place::uv;
 use crate::{Material, Materials, Mesh};
 
 /// Balls \[m\] within which the skin is drawn with finer triangles: centre on the side of positive x, radius, and how
