@@ -1,6 +1,7 @@
 //! Whole pictures on both backends.
 
 use glam::Vec3;
+use strandline_body::Mannequin;
 use strandline_checks::flip::compare;
 use strandline_checks::gpu;
 use strandline_groom::Style;
@@ -33,6 +34,21 @@ fn check_pictures(name: &str, both: &Both, body: bool) {
 fn draw_agrees_with_and_without_a_body() {
     check_pictures("long hair on a head", &Both::new(Style::Long, 12), true);
     check_pictures("curls alone", &Both::new(Style::Curly, 24), false);
+}
+
+#[test]
+fn draw_agrees_on_a_face_with_eyes() {
+    let mut both = Both::new(Style::Pixie, 12);
+    both.mesh = Mannequin::new().figure();
+    let face = both.body.world_from_head().point(Vec3::new(0.0, -0.03, 0.08));
+    let ahead = both.body.world_from_head().direction(Vec3::Z);
+    both.camera = Camera { position: face + 0.45 * ahead, target: face, ..both.camera };
+    check_pictures("a face", &both, true);
+    // Neither skin without its colours nor a head without eyes is near it.
+    let Some([on_cpu, _]) = pictures(&both, true) else { return };
+    both.mesh.materials = None;
+    let Some([_, plain]) = pictures(&both, true) else { return };
+    assert!(compare(&plain, &on_cpu, MEAN, ONE_IN_A_HUNDRED).is_err());
 }
 
 #[test]

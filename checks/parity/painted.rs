@@ -81,7 +81,7 @@ fn linear(body_look: BodyLook, around: f32, lights: &[Light], from: f32) -> Vec<
 }
 
 fn matt() -> BodyLook {
-    BodyLook { wrap: 0.0, specular: 0.0, scalp: 0.0, ..BodyLook::default() }
+    BodyLook { wrap: 0.0, softness: 0.0, oil: 0.0, specular: 0.0, scalp: 0.0, ..BodyLook::default() }
 }
 
 /// The middle of a texel of the board [m].

@@ -88,6 +88,8 @@ impl Both {
                     materials: true,
                     color: Vec3::splat(0.3),
                     wrap: 0.2,
+                    softness: 0.4,
+                    oil: 0.3,
                     specular: 0.03,
                     roughness: 0.5,
                     scalp: 0.7,

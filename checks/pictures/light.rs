@@ -159,6 +159,8 @@ pub fn sphere(light: Option<Light>, around: f32) -> Scene {
         body_look: BodyLook {
             color: Vec3::new(0.35, 0.25, 0.2),
             wrap: 0.0,
+            softness: 0.0,
+            oil: 0.0,
             specular: 0.0,
             scalp: 0.0,
             ..BodyLook::default()
@@ -302,6 +304,8 @@ fn head(folder: &Path, lights: Vec<Light>) -> Scene {
             materials: true,
             color: Vec3::new(0.45, 0.33, 0.27),
             wrap: 0.0,
+            softness: 0.0,
+            oil: 0.0,
             specular: 0.04,
             roughness: 0.45,
             scalp: 0.0,

@@ -127,6 +127,8 @@ fn picture_in(
         body_look: &BodyLook {
             color: Vec3::splat(0.5),
             wrap: 0.0,
+            softness: 0.0,
+            oil: 0.0,
             specular: 0.0,
             scalp: 0.0,
             ..BodyLook::default()

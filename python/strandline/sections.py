@@ -224,6 +224,12 @@ class Body(TypedDict, total=False):
     model: str
     """The body when no file is named. Allowed: one of auto, mannequin, none."""
 
+    build: str
+    """Build of the mannequin: its neck, shoulders, cheeks and jaw. Allowed: one of slender, medium, broad."""
+
+    eyes: str
+    """Eyes of the mannequin. Allowed: one of open, closed."""
+
     file: str
     """An .obj, .gltf, .glb, .vrm, .ply or .stl file; or a body in motion: an .npz with `vertices` over time and
     `faces`, a folder of .obj files with the same faces, or such files by a pattern, `walk%04d.obj`. Allowed: the path
@@ -998,7 +1004,7 @@ class Look(TypedDict, total=False):
     preset: str
     """The look that what is not given comes from: pigment and colours, fibre, highlights, layers of shadow and
     surroundings. "thesis" brings `picture.tone_map`, `picture.background` and lights too. Allowed: one of brown,
-    black, blonde, red, grey, thesis."""
+    black, blonde, red, copper, grey, white, blue, pink, violet, green, thesis."""
 
     follow_strands: int
     """Follow strands of each guide, the guide itself among them. Allowed: 1 to 1024."""
@@ -1079,6 +1085,14 @@ class BodyLook(TypedDict, total=False):
 
     wrap: float
     """Reach of light around the edge of shadow; 0 is none. Allowed: 0 to 1."""
+
+    softness: float
+    """Light under the skin: how far red light reaches around the edge of shadow beyond `wrap`, green and blue less.
+    Parts with a colour of their own have none. Allowed: 0 to 1."""
+
+    oil: float
+    """Share of the skin's highlight that oil makes narrower. Parts with a colour of their own have none. Allowed: 0
+    to 1."""
 
     specular: float
     """Reflectance at normal incidence; 0 is no highlight. Allowed: 0 to 1."""

@@ -128,7 +128,7 @@ pub struct Inputs {
     /// Material of the hair: fine, medium, coarse, wet or sprayed.
     #[arg(long, value_name = "NAME", value_parser = HairKind::from_str)]
     pub hair: Option<HairKind>,
-    /// Colour of the hair: brown, black, blonde, red (or copper), grey, thesis, or a colour #rrggbb.
+    /// Colour of the hair: brown, black, blonde, red, copper, grey, white, blue, pink, violet, green, thesis, or a colour #rrggbb.
     #[arg(long, value_name = "NAME|#RRGGBB", value_parser = parse_look)]
     pub look: Option<LookChoice>,
     /// Width of drawn strands over that of the file or the style: `look.width_scale`.

@@ -7,6 +7,7 @@ use glam::{Vec2, Vec3};
 use strandline_base::math;
 use strandline_base::par::prelude::*;
 
+use crate::scalp_place::{CENTER, uv};
 use crate::{Mannequin, Random, SignedDistance};
 
 /// Root of a strand on the skin, in head space.
@@ -31,18 +32,12 @@ pub struct Scalp {
     areas: Vec<f32>,
 }
 
-/// The scalp is seen from here without overlap \[m\].
-const CENTER: Vec3 = Vec3::new(0.0, 0.0, -0.005);
 /// Cells around the vertical axis.
 const AZIMUTHS: usize = 72;
 /// Cells from the vertex downward.
 const POLARS: usize = 54;
 /// Angle from the vertical \[rad\] that reaches below the nape.
 const LOWEST: f32 = 2.55;
-/// Direction from [`CENTER`] to the crown.
-const CROWN: Vec3 = Vec3::new(0.0, 0.862, -0.507);
-/// Largest angle \[rad\] between the crown and a place on the scalp.
-const WIDEST: f32 = 2.10;
 /// Bare skin around the root of an ear \[m\].
 const EAR_MARGIN: f32 = 0.0025;
 /// Candidates for each root.
@@ -184,14 +179,6 @@ fn skin_radius(mannequin: &Mannequin, direction: Vec3) -> f32 {
         radius += depth;
     }
     radius
-}
-
-fn uv(position: Vec3) -> Vec2 {
-    let arm = (position - CENTER).normalize();
-    let back = Vec3::X.cross(CROWN);
-    let around = Vec2::new(arm.x, -arm.dot(back)).normalize_or(Vec2::Y);
-    let share = math::acos(arm.dot(CROWN).clamp(-1.0, 1.0)) / WIDEST;
-    (around * (0.5 * share) + 0.5).clamp(Vec2::ZERO, Vec2::ONE)
 }
 
 /// Place along the Hilbert curve of order 16 over the unit square \[Hilbert1891\].

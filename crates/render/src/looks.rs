@@ -7,6 +7,16 @@ use crate::fibre::{FibreModel, Scheuermann, chiang::Pigment};
 use crate::light_field::{self, Field};
 use crate::{Environment, Light, Look, Preset, RenderError, Shadow};
 
+/// Pigment of hair that a dye covers, and what it is if `pigment` is melanin again: that of brown hair.
+const PLAIN: [f32; 3] = [1.3, 0.1, 1.0];
+
+impl Preset {
+    /// True for a colour that no hair has by itself: the look's colours decide in the place of melanin.
+    pub const fn is_dyed(self) -> bool {
+        matches!(self, Self::Blue | Self::Pink | Self::Violet | Self::Green)
+    }
+}
+
 impl Look {
     /// Lights that shine from the surroundings.
     pub(crate) fn suns(&self) -> &[Light] {
@@ -43,6 +53,16 @@ impl Look {
         Self::named(Preset::Thesis)
     }
 
+    /// Light red hair.
+    pub fn copper() -> Self {
+        Self::named(Preset::Copper)
+    }
+
+    /// White hair.
+    pub fn white() -> Self {
+        Self::named(Preset::White)
+    }
+
     /// A look by its name.
     pub fn named(preset: Preset) -> Self {
         let mut look = Self::default();
@@ -68,12 +88,29 @@ impl Look {
             Preset::Blonde => {
                 (Vec3::new(0.46, 0.31, 0.165), Vec3::new(0.68, 0.51, 0.31), [0.3, 0.0, 0.7], 0.0)
             }
-            Preset::Red => (Vec3::new(0.34, 0.10, 0.035), Vec3::new(0.46, 0.165, 0.06), [0.0, 0.9, 1.0], 0.0),
+            Preset::Red => {
+                (Vec3::new(0.17, 0.042, 0.015), Vec3::new(0.24, 0.065, 0.024), [0.25, 1.6, 0.9], 0.0)
+            }
+            Preset::Copper => {
+                (Vec3::new(0.34, 0.10, 0.035), Vec3::new(0.46, 0.165, 0.06), [0.0, 0.9, 1.0], 0.0)
+            }
             Preset::Grey => (Vec3::new(0.17, 0.16, 0.15), Vec3::new(0.22, 0.21, 0.20), [2.0, 0.0, 1.0], 0.6),
+            Preset::White => (Vec3::new(0.72, 0.69, 0.64), Vec3::new(0.76, 0.74, 0.70), [2.0, 0.0, 1.0], 1.0),
+            Preset::Blue => (Vec3::new(0.020, 0.055, 0.30), Vec3::new(0.035, 0.11, 0.42), PLAIN, 0.0),
+            Preset::Pink => (Vec3::new(0.62, 0.13, 0.27), Vec3::new(0.80, 0.30, 0.44), PLAIN, 0.0),
+            Preset::Violet => (Vec3::new(0.13, 0.030, 0.26), Vec3::new(0.24, 0.075, 0.42), PLAIN, 0.0),
+            Preset::Green => (Vec3::new(0.018, 0.20, 0.085), Vec3::new(0.050, 0.36, 0.17), PLAIN, 0.0),
         };
         (self.root_color, self.tip_color, self.grey) = (root, tip, grey);
         let fibre = &mut self.fibre.chiang;
         [fibre.eumelanin, fibre.pheomelanin, fibre.tip_pigment] = melanin;
+        if preset.is_dyed() {
+            fibre.pigment = Pigment::Color;
+        }
+        if preset == Preset::Black {
+            // Straight, thick hair has flat scales: its ring of light is narrow and even.
+            (fibre.roughness_along, self.highlight_noise) = (0.18, 0.8);
+        }
         if preset == Preset::Thesis {
             self.fibre.model = FibreModel::Scheuermann;
             self.highlight_noise = 4.0;
@@ -178,5 +215,46 @@ mod tests {
         }
         assert_eq!(Look::brown(), Look::named(Preset::Brown));
         assert_ne!(Look::thesis().fibre.model, Look::brown().fibre.model);
+    }
+
+    /// Colour of a thick block of hair of a look, linear RGB.
+    fn block(preset: Preset) -> Vec3 {
+        let look = Look::named(preset);
+        look.fibre.chiang.block_albedo(look.root_color)
+    }
+
+    /// Luminance of linear RGB.
+    fn luminance(color: Vec3) -> f32 {
+        color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+    }
+
+    #[test]
+    fn looks_have_the_colour_of_their_name() {
+        use Preset::{Black, Blonde, Blue, Brown, Copper, Green, Pink, Red, Violet};
+        let [black, brown, red, copper, blonde] = [Black, Brown, Red, Copper, Blonde].map(block);
+        let rising = [black, brown, copper, blonde].map(luminance);
+        assert!(rising.windows(2).all(|pair| 1.2 * pair[0] < pair[1]), "{rising:?}");
+        let redness = |color: Vec3| color.x / color.y;
+        assert!(redness(red) > 1.25 * redness(brown) && redness(copper) > 1.1 * redness(blonde));
+        assert!(luminance(red) < 0.8 * luminance(copper), "{red} {copper}");
+        assert!(black.max_element() < 1.6 * black.min_element() + 0.02 && luminance(black) < 0.04, "{black}");
+        let [blue, pink, violet, green] = [Blue, Pink, Violet, Green].map(block);
+        assert!(blue.z > 3.0 * blue.x && green.y > 2.0 * green.x.max(green.z), "{blue} {green}");
+        assert!(pink.x > 1.8 * pink.y && pink.z > pink.y && violet.z > violet.x && violet.x > 2.0 * violet.y);
+        assert_eq!([Look::white().grey, Look::grey().grey], [1.0, 0.6]);
+    }
+
+    #[test]
+    fn looks_are_near_measured_hair() {
+        // Hair measured in an integrating sphere, specular light left out [Scanavez2000, tables III, IV]: L* of black and
+        // of dark brown hair.
+        let from_lightness = |lightness: f32| ((lightness + 16.0) / 116.0).powi(3);
+        let [black, brown] = [18.0, 23.6].map(from_lightness);
+        let [drawn_black, drawn_brown] =
+            [Preset::Black, Preset::Brown].map(|preset| luminance(block(preset)));
+        // Black hair sends back what its surface reflects, and brown hair as much beside the light from its inside.
+        assert!(drawn_black < 0.1 * black, "{drawn_black} {black}");
+        let all = drawn_brown + black;
+        assert!((0.7 * brown..1.4 * brown).contains(&all), "{all} {brown}");
     }
 }

@@ -116,6 +116,6 @@ impl Ear {
             .join(self.stem.at(point), 0.006)
             .join(rim, 0.004)
             .join(self.fold.at(point), 0.005)
-            .join(self.tragus.at(point), 0.005)
+            .join(self.tragus.at(point), 0.008)
     }
 }

@@ -2,6 +2,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use super::person::{Build, Eyes};
 use super::shape::BustShape;
 use crate::{Aabb, SignedDistance};
 
@@ -12,6 +13,8 @@ use crate::{Aabb, SignedDistance};
 #[derive(Clone, Debug)]
 pub struct Mannequin {
     pub(super) shape: BustShape,
+    build: Build,
+    eyes: Eyes,
 }
 
 /// Within this distance \[m\] of the skin the value is divided by the length of its gradient,
@@ -19,15 +22,37 @@ pub struct Mannequin {
 const CORRECTED: f32 = 0.015;
 /// In creases, where the gradient is shorter than this, the division would promise too much.
 const STEEP_ENOUGH: f32 = 0.75;
+/// Ways \[m\] from the middle of an eye up to which nothing is multiplied, and from which on all is as elsewhere.
+const ABOUT_EYES: [f32; 2] = [0.028, 0.040];
 /// From this distance \[m\] on the value grows by [`FAR_RATE`] of the way, because the skin under a
 /// place need not be the nearest skin.
 const FAR: f32 = 0.010;
 const FAR_RATE: f32 = 0.7;
 
 impl Mannequin {
-    /// The one model, shared.
+    /// The one model, shared: of medium build, with open eyes.
     pub fn new() -> Arc<Self> {
         Arc::new(Self::default())
+    }
+
+    /// The model of a build. Skull, scalp and ears are those of any other; the distance differs at cheeks, jaw, lids,
+    /// neck and shoulders alone.
+    pub fn of(build: Build, eyes: Eyes) -> Self {
+        Self { shape: BustShape::of(build, eyes), build, eyes }
+    }
+
+    /// The shortest gradient by which a value is divided: about the eyes, where brow, lids and cheek fold, none promises
+    /// too much.
+    fn steep_enough(&self, point: Vec3) -> f32 {
+        let [near, far] = ABOUT_EYES;
+        let half = Vec3::new(point.x.abs(), point.y, point.z);
+        let off = (half.distance(self.shape.eye.center) - near) / (far - near);
+        STEEP_ENOUGH + (1.0 - STEEP_ENOUGH) * (1.0 - off).clamp(0.0, 1.0)
+    }
+
+    /// True where the eyeballs show.
+    pub(super) fn has_open_eyes(&self) -> bool {
+        self.eyes == Eyes::Open
     }
 
     /// Distance \[m\] to the nearer ear alone.
@@ -44,7 +69,7 @@ impl Mannequin {
 
 impl Default for Mannequin {
     fn default() -> Self {
-        Self { shape: BustShape::mannequin() }
+        Self::of(Build::default(), Eyes::default())
     }
 }
 
@@ -55,7 +80,7 @@ impl SignedDistance for Mannequin {
 
     fn distance_and_gradient(&self, point: Vec3) -> (f32, Vec3) {
         let field = self.shape.at(point);
-        let steepness = field.gradient.length().max(STEEP_ENOUGH);
+        let steepness = field.gradient.length().max(self.steep_enough(point));
         let fade = (2.0 - field.value.abs() / CORRECTED).clamp(0.0, 1.0);
         let value = field.value / (1.0 + (steepness - 1.0) * fade);
         let distance = if value > FAR { FAR + FAR_RATE * (value - FAR) } else { value };
@@ -67,7 +92,11 @@ impl SignedDistance for Mannequin {
     }
 
     fn bounds(&self) -> Aabb {
-        Aabb { min: Vec3::new(-0.217, -0.265, -0.115), max: Vec3::new(0.217, 0.112, 0.122) }
+        let side = match self.build {
+            Build::Slender | Build::Medium => 0.217,
+            Build::Broad => 0.236,
+        };
+        Aabb { min: Vec3::new(-side, -0.265, -0.115), max: Vec3::new(side, 0.112, 0.122) }
     }
 }
 

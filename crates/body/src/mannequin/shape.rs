@@ -1,6 +1,7 @@
 use glam::Vec3;
 
 use super::ear::Ear;
+use super::eye::Eye;
 use super::field::{Ellipsoid, Field, RoundCone, Swelling, raise};
 
 /// Broad swellings of face and skull.
@@ -11,6 +12,10 @@ const SKULL_MASS_COUNT: usize = 11;
 const FACE_MASSES_BEGIN: f32 = -0.035;
 /// Small swellings laid over them.
 pub(super) const DETAIL_COUNT: usize = 14;
+
+/// Swellings of the throat, and the height \[m\] below which they lie.
+pub(super) const THROAT_COUNT: usize = 3;
+const THROAT_BEGINS: f32 = -0.11;
 
 /// The parts of the bust, all given on the side of positive x and mirrored. SI units.
 #[repr(C)]
@@ -27,9 +32,7 @@ pub(super) struct BustShape {
     pub(super) nose_reach: f32,
     pub(super) nostril: Ellipsoid,
     pub(super) nostril_reach: f32,
-    pub(super) eyeball: Ellipsoid,
-    pub(super) eyeball_reach: f32,
-    pub(super) lids: [Swelling; 2],
+    pub(super) eye: Eye,
     pub(super) neck: RoundCone,
     pub(super) neck_reach: f32,
     pub(super) trapezius: RoundCone,
@@ -40,6 +43,9 @@ pub(super) struct BustShape {
     pub(super) chest_reach: f32,
     pub(super) muscle: RoundCone,
     pub(super) muscle_reach: f32,
+    pub(super) collar_bone: RoundCone,
+    pub(super) collar_bone_reach: f32,
+    pub(super) throat: [Swelling; THROAT_COUNT],
     pub(super) ear: Ear,
     pub(super) masses: [Swelling; MASS_COUNT],
     pub(super) details: [Swelling; DETAIL_COUNT],
@@ -94,12 +100,19 @@ impl BustShape {
         let trapezius = unfold(self.trapezius.at(folded), slope);
         let shoulder = unfold(self.shoulder.at(folded), slope);
         let muscle = unfold(self.muscle.at(folded), slope);
-        self.chest
+        let collar_bone = unfold(self.collar_bone.at(folded), slope);
+        let mut torso = self
+            .chest
             .at(point)
             .join(shoulder, self.shoulder_reach)
             .join(trapezius, self.trapezius_reach)
             .join(neck, self.chest_reach)
             .join(muscle, self.muscle_reach)
+            .join(collar_bone, self.collar_bone_reach);
+        if point.y < THROAT_BEGINS && point.z > FACE_MASSES_BEGIN {
+            raise(&self.throat, point, &mut torso);
+        }
+        torso
     }
 
     fn with_head(&self, point: Vec3, torso: Field) -> Field {
@@ -123,8 +136,7 @@ impl BustShape {
         *head = head.join(self.nose.at(point), self.nose_reach);
         *head = head.join(self.nostril.at(point), self.nostril_reach);
         raise(&self.details, point, head);
-        *head = head.join(self.eyeball.at(point), self.eyeball_reach);
-        raise(&self.lids, point, head);
+        self.eye.add(point, head);
     }
 }
 

@@ -112,7 +112,7 @@ impl Slab<'_> {
 }
 
 /// Carries a point near the skin onto it; the point and the normal there.
-fn settle(mannequin: &Mannequin, mut point: Vec3) -> (Vec3, Vec3) {
+pub(super) fn settle(mannequin: &Mannequin, mut point: Vec3) -> (Vec3, Vec3) {
     for _ in 0..NEWTON_STEPS {
         let field = mannequin.shape.at(point);
         let step = field.gradient * (field.value / field.gradient.length_squared().max(1e-2));

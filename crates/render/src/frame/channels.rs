@@ -23,8 +23,16 @@ pub(crate) struct Known {
 }
 
 /// The skin that is drawn to find them: black, with no light from anywhere.
-pub(crate) const BLACK: BodyLook =
-    BodyLook { materials: false, color: Vec3::ZERO, wrap: 0.0, specular: 0.0, roughness: 0.5, scalp: 0.0 };
+pub(crate) const BLACK: BodyLook = BodyLook {
+    materials: false,
+    color: Vec3::ZERO,
+    wrap: 0.0,
+    softness: 0.0,
+    oil: 0.0,
+    specular: 0.0,
+    roughness: 0.5,
+    scalp: 0.0,
+};
 
 impl Known {
     /// The channels of a picture.

@@ -122,10 +122,12 @@ mirror! {
         pub summed: u32,
         /// Cells along the longest side of the hair.
         pub cells: u32,
-        pub unused_last: u32,
+        /// Share of the skin's highlight that is as narrow as that of oil.
+        pub body_oil: f32,
         /// Mean colour of the body.
         pub reflected: [f32; 3],
-        pub unused_reflected: f32,
+        /// Reach of red light in skin around the edge of shadow.
+        pub body_softness: f32,
         pub fitted: Fitted,
         then lights: LightSource,
     }
@@ -273,6 +275,8 @@ impl Frame {
             sparkle: look.fibre.scheuermann.sparkle,
             body_color: body.color.to_array(),
             body_wrap: body.wrap,
+            body_softness: body.softness,
+            body_oil: body.oil,
             body_specular: body.specular,
             body_roughness: body.roughness,
             layers: shadow.layers,

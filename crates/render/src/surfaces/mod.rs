@@ -38,8 +38,9 @@ pub(crate) struct Surfaces {
     pub words: Vec<u32>,
     /// Shape `[triangle][corner]`.
     pub corners: Vec<Corner>,
-    /// Mean of the colours of triangles that have one, linear RGB, times their share of the area; that share.
-    mean: (Vec3, f32),
+    /// Means of the colours of triangles that have one, and of the factors of those that have none, linear RGB, each times
+    /// their share of the area.
+    mean: [Vec3; 2],
     /// True where materials cut parts of triangles away.
     pub cuts: bool,
 }
@@ -63,15 +64,15 @@ impl Surfaces {
         words.append(&mut texels);
         let corners = corners(mesh, materials);
         let cuts = materials.list.iter().any(|material| material.cutoff.is_some());
-        let mut surfaces = Self { words, corners, mean: (Vec3::ZERO, 0.0), cuts };
+        let mut surfaces = Self { words, corners, mean: [Vec3::ZERO, Vec3::ONE], cuts };
         surfaces.mean = surfaces.mean(mesh);
         Some(surfaces)
     }
 
     /// Mean colour of the body, linear RGB, whose parts without a colour of their own have a given one.
     pub fn mean_color(&self, plain: Vec3) -> Vec3 {
-        let (own, share) = self.mean;
-        own + plain * (1.0 - share)
+        let [own, factor] = self.mean;
+        own + plain * factor
     }
 
     /// Frees what a device holds.
@@ -80,21 +81,19 @@ impl Surfaces {
         (self.words, self.corners) = Default::default();
     }
 
-    fn mean(&self, mesh: &Mesh) -> (Vec3, f32) {
-        let (mut sum, mut own, mut whole) = (Vec3::ZERO, 0.0, 0.0);
+    fn mean(&self, mesh: &Mesh) -> [Vec3; 2] {
+        let (mut own, mut factor, mut whole) = (Vec3::ZERO, Vec3::ZERO, 0.0);
         for (index, corners) in mesh.triangles.iter().enumerate() {
             let [a, b, c] = corners.map(|corner| mesh.positions[corner as usize]);
             let area = (b - a).cross(c - a).length();
             let painted = self.at(index as u32, Vec3::splat(1.0 / 3.0), 0.0);
             if !painted.is_cut() && area.is_finite() {
                 whole += area;
-                if let Some(color) = painted.own_color() {
-                    sum += color * area;
-                    own += area;
-                }
+                own += painted.own_color().unwrap_or(Vec3::ZERO) * area;
+                factor += if painted.is_skin() { painted.color_on(Vec3::ONE) * area } else { Vec3::ZERO };
             }
         }
-        if whole > 0.0 { (sum / whole, own / whole) } else { (Vec3::ZERO, 0.0) }
+        if whole > 0.0 { [own, factor].map(|sum| sum / whole) } else { [Vec3::ZERO, Vec3::ONE] }
     }
 }
 

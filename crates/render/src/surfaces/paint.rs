@@ -28,6 +28,22 @@ impl Painted {
         self.is_own.then(|| self.color.truncate())
     }
 
+    /// Its colour, linear RGB, on a body of a given one, of which it has a share where it has none of its own.
+    pub fn color_on(&self, plain: Vec3) -> Vec3 {
+        if self.is_own { self.color.truncate() } else { plain * self.color.truncate() }
+    }
+
+    /// True for skin: a surface whose colour the body's settings say.
+    pub fn is_skin(&self) -> bool {
+        !self.is_own
+    }
+
+    /// A plain colour of its own, linear RGB.
+    #[cfg(test)]
+    pub fn of_color(color: Vec3) -> Self {
+        Self { color: color.extend(1.0), roughness: -1.0, metallic: 0.0, cutoff: -1.0, is_own: true }
+    }
+
     /// The mean of several of one material.
     pub fn mean(several: impl Iterator<Item = Self>) -> Option<Self> {
         let (mut first, mut sum, mut count) = (None, Vec4::ZERO, 0.0);

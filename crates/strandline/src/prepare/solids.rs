@@ -47,7 +47,8 @@ pub(super) fn solids(loading: &mut Loading) -> Result<(), Error> {
 /// Adds the mannequin. Hair hits its signed distance sampled at `spacing`, or the exact one, whose lookups take four
 /// times as long.
 fn mannequin(loading: &mut Loading) -> Result<(), Error> {
-    let (mannequin, body) = (Mannequin::new(), &loading.scene.body);
+    let body = &loading.scene.body;
+    let mannequin = Arc::new(Mannequin::of(body.build, body.eyes));
     let shape = if body.exact {
         Shape::Mannequin(mannequin.clone())
     } else {
@@ -57,7 +58,7 @@ fn mannequin(loading: &mut Loading) -> Result<(), Error> {
     let (scene, pivot) = (&loading.scene, mannequin.neck_pivot());
     let bends = scene.motion.neck && !scene.body.exact;
     let neck = bends.then(|| Neck::new(scene.motion.pivot.unwrap_or(pivot)));
-    (loading.mesh, loading.pivot) = (Some(Mesh { neck, ..mannequin.mesh() }), Some(pivot));
+    (loading.mesh, loading.pivot) = (Some(Mesh { neck, ..mannequin.figure() }), Some(pivot));
     loading.shape = Some(shape);
     Ok(())
 }

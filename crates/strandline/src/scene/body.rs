@@ -7,7 +7,7 @@ use strandline_base::{Group, Key, Kind, Row, SettingError, Table, Value, Word, c
 use super::KeyframeSection;
 use crate::{
     Error,
-    body::{Carrier, Collider, Shape},
+    body::{Build, Carrier, Collider, Eyes, Shape},
     groom::format::{Scale, Up},
 };
 
@@ -60,6 +60,10 @@ settings! {
     pub struct BodySection {
         /// The body when no file is named.
         model: Model = Model::default();
+        /// Build of the mannequin: its neck, shoulders, cheeks and jaw.
+        build: Build = Build::default();
+        /// Eyes of the mannequin.
+        eyes: Eyes = Eyes::default();
         /// An .obj, .gltf, .glb, .vrm, .ply or .stl file; or a body in motion: an .npz with `vertices` over time and
         /// `faces`, a folder of .obj files with the same faces, or such files by a pattern, `walk%04d.obj`.
         file: Option<PathBuf> = None;

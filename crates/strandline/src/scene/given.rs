@@ -47,10 +47,11 @@ impl Given {
 }
 
 impl Scene {
-    /// Draws the body in a colour that is given, instead of in its own ones, unless these are asked for.
+    /// Draws the body of a file in a colour that is given, instead of in its own ones, unless these are asked for. The
+    /// mannequin's skin takes the colour as it is.
     pub(crate) fn choose_body_colors(&mut self) {
         let Given { body_color, body_materials, .. } = self.given;
-        self.body_look.materials &= !body_color || body_materials;
+        self.body_look.materials &= !body_color || body_materials || self.body.file.is_none();
     }
 }
 
@@ -62,6 +63,7 @@ mod tests {
     fn a_colour_that_is_given_stands_for_those_of_the_body() {
         let chosen = |text: &str, set: &[[&str; 2]]| {
             let mut scene = Scene::parse(text, "a test").unwrap();
+            scene.body.file = Some("body.obj".into());
             set.iter().for_each(|[key, value]| scene.set(key, value).unwrap());
             scene.choose_body_colors();
             scene.body_look.materials

@@ -174,6 +174,6 @@ fn colours_are_set_as_in_other_programs() {
     assert!(refused("simulation.gravity", "#ff0000").contains("expected 3 numbers"));
     assert!(refused("look.root_color", "#ff00").contains("expected 3 numbers"));
     scene.set("look.preset", "Copper").unwrap();
-    assert_eq!(scene.look.preset.name(), "red");
-    assert!(refused("look.preset", "purple").contains("brown, black, blonde, red, grey"));
+    assert_eq!(scene.look.preset.name(), "copper");
+    assert!(refused("look.preset", "plaid").contains("brown, black, blonde, red, copper, grey"));
 }

@@ -50,7 +50,7 @@ impl Skin<'_> {
                 if reflected != Vec3::ZERO {
                     let map = self.shadows.map(first + place);
                     let passed = map.map_or(1.0, |map| map.on_skin(point, normal, [place, count]));
-                    sum += reflected * (PI * passed);
+                    sum += reflected * bled(passed, finish.bleed) * PI;
                 }
             }
             first += count;
@@ -69,13 +69,19 @@ pub(crate) struct Finish {
     /// Reflectance at normal incidence, linear RGB.
     specular: Vec3,
     roughness: f32,
-    wrap: f32,
+    /// Reach of light around the edge of shadow, of each channel.
+    reach: Vec3,
+    /// Share of the highlight that is as narrow as that of oil.
+    oil: f32,
+    /// Red that penumbrae gain.
+    bleed: f32,
 }
 
 impl Finish {
     /// That of a look with a factor of its colour, or of paint.
     fn new(look: &BodyLook, tint: Vec3, painted: Option<&Painted>) -> Self {
-        let color = painted.and_then(Painted::own_color).unwrap_or(look.color) * tint;
+        let color = painted.map_or(look.color, |painted| painted.color_on(look.color)) * tint;
+        let skin = if painted.is_none_or(Painted::is_skin) { 1.0 } else { 0.0 };
         let (metallic, own) = painted.map_or((0.0, -1.0), |painted| (painted.metallic, painted.roughness));
         let roughness = if own < 0.0 { look.roughness } else { own.max(LEAST_ROUGHNESS) };
         let specular = Vec3::splat(look.specular);
@@ -85,10 +91,22 @@ impl Finish {
             diffuse: color * (1.0 - metallic),
             specular: specular + (color - specular) * metallic,
             roughness,
-            wrap: look.wrap,
+            reach: (Vec3::splat(look.wrap) + TRAVEL * (look.softness * skin)).min(Vec3::ONE),
+            oil: look.oil * skin,
+            bleed: BLEED * look.softness * skin,
         }
     }
 }
+
+/// Ways of green and of blue light in skin over that of red: diffuse mean free paths of 3.67, 1.37 and 0.68 mm
+/// \[Jensen2001\], as of a sphere a few ways across.
+pub(crate) const GREEN_WAY: f32 = 0.372;
+pub(crate) const BLUE_WAY: f32 = 0.186;
+const TRAVEL: Vec3 = Vec3::new(1.0, GREEN_WAY, BLUE_WAY);
+/// Share of what a penumbra hides that red light, scattered in from beside it, brings back.
+pub(crate) const BLEED: f32 = 0.6;
+/// Width of the highlight of oil over that of the skin.
+pub(crate) const OIL_WIDTH: f32 = 0.6;
 
 /// Least roughness of a material: the highlight of a smoother one is smaller than a sample.
 pub(crate) const LEAST_ROUGHNESS: f32 = 0.2;
@@ -97,10 +115,34 @@ pub(crate) const LEAST_ROUGHNESS: f32 = 0.2;
 /// \[1/sr\], linear RGB. All directions are unit vectors away from the surface.
 fn reflectance(finish: &Finish, normal: Vec3, to_eye: Vec3, to_light: Vec3) -> Vec3 {
     let facing = normal.dot(to_light);
-    // Light wrapped around the edge of shadow, scaled so that no energy is gained.
-    let wrap = finish.wrap;
-    let diffuse = ((facing + wrap) / (1.0 + wrap)).max(0.0) / (1.0 + wrap);
-    finish.diffuse * (diffuse / PI) + highlight(finish, normal, to_eye, to_light)
+    finish.diffuse * (wrapped(facing, finish.reach) / PI) + highlights(finish, normal, to_eye, to_light)
+}
+
+/// The cosine of light, smooth over its reach about the edge of shadow, of each channel. It is scaled so that a sphere
+/// reflects as much as with a reach of 0: the integral over all normals is pi.
+fn wrapped(facing: f32, reach: Vec3) -> Vec3 {
+    let reach = reach.max(Vec3::splat(LEAST_REACH));
+    let within = (Vec3::splat(facing) + reach).max(Vec3::ZERO).min(2.0 * reach);
+    let above = (Vec3::splat(facing) - reach).max(Vec3::ZERO);
+    (within * within / (4.0 * reach) + above) / (Vec3::ONE + reach * reach / 3.0)
+}
+
+/// Reach below which the edge of shadow is sharp.
+pub(crate) const LEAST_REACH: f32 = 1e-3;
+
+/// The highlight of skin under a film of oil: a wide lobe and a narrow one.
+fn highlights(finish: &Finish, normal: Vec3, to_eye: Vec3, to_light: Vec3) -> Vec3 {
+    let wide = highlight(finish, normal, to_eye, to_light);
+    if finish.oil == 0.0 {
+        return wide;
+    }
+    let oily = Finish { roughness: (finish.roughness * OIL_WIDTH).max(LEAST_ROUGHNESS), ..*finish };
+    wide.lerp(highlight(&oily, normal, to_eye, to_light), finish.oil)
+}
+
+/// Share of light, of each channel, that reaches skin of which a share sees the light: red comes in from beside.
+fn bled(passed: f32, bleed: f32) -> Vec3 {
+    Vec3::splat(passed) + Vec3::new(1.0, 0.25, 0.1) * (bleed * passed * (1.0 - passed))
 }
 
 /// Microfacets with the distribution and masking of \[Walter2007\] and the Fresnel term of
@@ -128,7 +170,8 @@ mod tests {
 
     #[test]
     fn no_more_light_leaves_than_arrives() {
-        let look = BodyLook { color: Vec3::ONE, wrap: 0.5, specular: 0.04, ..BodyLook::default() };
+        let look =
+            BodyLook { color: Vec3::ONE, wrap: 0.5, specular: 0.04, softness: 0.0, ..BodyLook::default() };
         let finish = Finish::new(&look, Vec3::ONE, None);
         let to_light = Vec3::new(0.6, 0.8, 0.0);
         let mut total = 0.0;
@@ -150,8 +193,40 @@ mod tests {
 
     #[test]
     fn light_from_behind_leaves_nothing() {
-        let look = BodyLook { wrap: 0.0, ..BodyLook::default() };
+        let look = BodyLook { wrap: 0.0, softness: 0.0, ..BodyLook::default() };
         let finish = Finish::new(&look, Vec3::ONE, None);
         assert_eq!(reflectance(&finish, Vec3::Y, Vec3::Y, Vec3::new(0.1, -0.99, 0.0)), Vec3::ZERO);
+    }
+
+    #[test]
+    fn soft_skin_is_red_at_the_edge_of_shadow_and_reflects_as_much() {
+        let look = BodyLook { color: Vec3::ONE, specular: 0.0, ..BodyLook::default() };
+        let at = |look: &BodyLook, facing: f32| wrapped(facing, Finish::new(look, Vec3::ONE, None).reach);
+        let edge = at(&look, 0.0);
+        assert!(edge.x > 1.5 * edge.y && edge.y > edge.z && edge.z > 0.0, "{edge}");
+        let hard = BodyLook { softness: 0.0, wrap: 0.0, ..look };
+        assert!(at(&hard, -0.01).max_element() == 0.0 && (at(&hard, 0.5) - 0.5).abs().max_element() < 1e-5);
+        // Normals of a sphere have evenly spread cosines.
+        for look in [look, hard] {
+            let steps = 4000;
+            let cosines = (0..steps).map(|step| (2 * step + 1) as f32 / steps as f32 - 1.0);
+            let mean = cosines.map(|facing| at(&look, facing)).sum::<Vec3>() / steps as f32;
+            assert!((mean - 0.25).abs().max_element() < 2e-4, "{mean}");
+        }
+        assert_eq!([bled(0.0, 0.5), bled(1.0, 0.5)], [Vec3::ZERO, Vec3::ONE]);
+        let half = bled(0.5, 0.5);
+        assert!(half.x > 1.15 * half.z && half.max_element() < 1.0, "{half}");
+    }
+
+    #[test]
+    fn oil_narrows_the_highlight_of_skin_alone() {
+        let peak = |oil: f32, painted: Option<&Painted>| {
+            let look = BodyLook { oil, ..BodyLook::default() };
+            let finish = Finish::new(&look, Vec3::ONE, painted);
+            highlights(&finish, Vec3::Y, Vec3::Y, Vec3::Y).x
+        };
+        assert!(peak(0.5, None) > 1.5 * peak(0.0, None));
+        let cloth = Painted::of_color(Vec3::splat(0.5));
+        assert_eq!(peak(0.5, Some(&cloth)), peak(0.0, Some(&cloth)));
     }
 }
