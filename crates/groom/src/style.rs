@@ -3,6 +3,9 @@
 mod comb;
 mod finish;
 mod grow;
+mod hair;
+mod locks;
+mod near;
 mod settings;
 mod strand;
 
@@ -27,4 +30,14 @@ choices! {
         Ponytail = "ponytail",
     }
     default Long
+}
+
+impl Style {
+    /// True if hair falls to both sides of a parting.
+    pub(crate) fn is_parted(self) -> bool {
+        match self {
+            Self::Bob | Self::Long | Self::Wavy | Self::Curly => true,
+            Self::Pixie | Self::Ponytail => false,
+        }
+    }
 }

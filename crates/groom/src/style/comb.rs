@@ -7,7 +7,7 @@ use strandline_body::Root;
 use super::{Style, StyleSettings};
 
 /// Centre of the whorl \[m\].
-const WHORL: Vec3 = Vec3::new(0.012, 0.092, -0.062);
+pub const WHORL: Vec3 = Vec3::new(0.012, 0.092, -0.062);
 /// Tie of a ponytail \[m\]; hair leaves it there.
 pub const TIE: Vec3 = Vec3::new(0.0, 0.038, -0.117);
 /// Radius \[m\] of the tied hair.

@@ -8,6 +8,8 @@ use strandline_base::memory::{self, Need};
 use strandline_base::par::prelude::*;
 use strandline_body::{Mannequin, Random, Root, SignedDistance};
 
+use super::hair::{self, Between};
+use super::locks::{self, Shaped};
 use super::comb::{Combed, Place, TIE_RADIUS, smooth};
 use super::strand::{CLEARANCE, Strand, outside};
 use super::{Style, StyleSettings, finish};
@@ -19,7 +21,7 @@ const STEP: f32 = 0.004;
 /// Share of the old direction kept in each step: hair is stiff.
 const STIFFNESS: f32 = 0.72;
 /// Diameter of a hair \[m\].
-const WIDTH: f32 = 8e-5;
+pub const WIDTH: f32 = 8e-5;
 /// Way \[m\] over which hair rises from its root to the full thickness of the hair.
 const RISE: f32 = 0.10;
 
@@ -32,44 +34,89 @@ const EAR_DOME: (Vec3, Vec3) = (Vec3::new(0.062, -0.026, -0.012), Vec3::new(0.03
 const DOME_REACH: f32 = 0.016;
 
 impl StyleSettings {
-    /// Grows the style on the built-in mannequin.
+    /// Grows the style on the built-in mannequin: `strand_count` strands.
     ///
     /// # Errors
     /// A setting outside its range; more memory than may be taken.
     pub fn grow(&self) -> Result<Groom, GroomError> {
+        self.grow_hair(self.strand_count)
+    }
+
+    /// Grows the style with `drawn` strands in all. The first `strand_count` are those of [`StyleSettings::grow`] and
+    /// marked as guides; the others lie between them, each with a curve of its own.
+    ///
+    /// # Errors
+    /// As [`StyleSettings::grow`].
+    pub fn grow_hair(&self, drawn: usize) -> Result<Groom, GroomError> {
         self.validate()?;
-        memory::check(&[self.memory()])?;
+        memory::check(&[self.memory(drawn)])?;
         let mannequin = Mannequin::new();
         let roots = mannequin.scalp().roots(self.strand_count, self.seed);
-        let strands: Vec<Strand> = roots
+        let combed: Vec<Strand> = roots
             .into_par_iter()
             .enumerate()
             .map(|(index, root)| march(self, &mannequin, index, beside_parting(self, &mannequin, root)))
             .collect();
-        let (strands, clumps) = finish::finish(self, &mannequin, strands);
+        let (guides, clumps) = finish::finish(self, &mannequin, &combed);
+        let mut grown = Grown::new(&guides, &clumps);
+        if drawn > guides.len() {
+            let hair = hair::between(self, &mannequin, &combed, drawn - guides.len());
+            grown.add(&hair, locks::shape(self, &mannequin, &combed, &clumps, &hair), &clumps);
+        }
+        Ok(grown.groom)
+    }
+}
+
+/// A groom while strands are put into it.
+struct Grown {
+    groom: Groom,
+}
+
+impl Grown {
+    /// Of guides and their clumps.
+    fn new(guides: &[Strand], clumps: &[u32]) -> Self {
         let mut groom = Groom::empty(WIDTH);
         groom.widths = Widths::Constant(WIDTH);
-        for strand in &strands {
+        for strand in guides {
             groom.push(strand.points.iter().copied());
         }
-        groom.root_uvs = Some(strands.iter().map(|strand| strand.root.uv).collect());
-        groom.root_normals = Some(strands.iter().map(|strand| strand.root.normal).collect());
-        groom.groups = Some(clumps);
-        Ok(groom)
+        groom.root_uvs = Some(guides.iter().map(|strand| strand.root.uv).collect());
+        groom.root_normals = Some(guides.iter().map(|strand| strand.root.normal).collect());
+        groom.groups = Some(clumps.to_vec());
+        Self { groom }
+    }
+
+    /// Adds strands between guides, and marks these.
+    fn add(&mut self, hair: &[Between], shaped: Vec<Shaped>, clumps: &[u32]) {
+        let groom = &mut self.groom;
+        let guide_count = groom.strand_count();
+        let mut widths = vec![WIDTH; guide_count];
+        for one in shaped {
+            groom.push(one.points);
+            widths.push(one.width);
+        }
+        groom.widths = Widths::PerStrand(widths);
+        groom.guide_flags = Some((0..groom.strand_count()).map(|strand| strand < guide_count).collect());
+        let roots = hair.iter().map(|own| own.strand.root);
+        groom.root_uvs.iter_mut().for_each(|uvs| uvs.extend(roots.clone().map(|root| root.uv)));
+        groom.root_normals.iter_mut().for_each(|all| all.extend(roots.clone().map(|root| root.normal)));
+        groom.groups.iter_mut().for_each(|all| all.extend(hair.iter().map(|own| clumps[own.guide])));
     }
 }
 
 impl StyleSettings {
-    /// Largest memory of growing: each strand as it is marched, shaped and finally a part of the groom.
-    pub fn memory(&self) -> Need {
+    /// Largest memory of growing so many strands: each as it is marched, shaped and finally a part of the groom.
+    pub fn memory(&self, drawn: usize) -> Need {
         let marched = 2 * (self.length / STEP).ceil() as u64;
         let each = 12 * (marched + 2 * self.points() as u64) + 3 * size_of::<Strand>() as u64;
-        Need::new(format!("style.strand_count = {}", self.strand_count), self.strand_count as u64, each)
+        let count = drawn.max(self.strand_count);
+        let key = if drawn > self.strand_count { "groom.bound" } else { "style.strand_count" };
+        Need::new(format!("{key} = {count}"), count as u64, each)
     }
 }
 
 /// Draws roots near the parting toward it, so that it is a line and not a lane.
-fn beside_parting(settings: &StyleSettings, mannequin: &Mannequin, root: Root) -> Root {
+pub(super) fn beside_parting(settings: &StyleSettings, mannequin: &Mannequin, root: Root) -> Root {
     let across = root.position.x - settings.parting;
     let share = across.abs() / PARTING_REACH;
     if matches!(settings.style, Style::Pixie | Style::Ponytail) || share >= 1.0 || root.position.y < 0.0 {
@@ -125,7 +172,7 @@ fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, roo
     }
     smooth_out(&mut points, mannequin);
     let points = equal_arcs(&points, settings.points()).collect();
-    Strand { root, points }
+    Strand { root, side: combed.side, points }
 }
 
 /// Direction in which a strand leaves the skin.

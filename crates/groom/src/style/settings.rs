@@ -43,6 +43,17 @@ settings! {
         curl_length: f32 = 0.05, in [0.005, 2.0] "m", slider [0.02, 0.3], more "looser curls";
         /// Amplitude of each strand's own disorder at the tip.
         noise: f32 = 0.003, in [0.0, 0.1] "m", slider [0.0, 0.02], more "more disorder";
+        /// Share of the way to the middle of its small lock, eight neighbours, that a strand between the guides is
+        /// drawn at the tip.
+        lock_share: f32 = 0.4, in [0.0, 1.0], more "finer, clearer locks";
+        /// Mean amplitude of the waves that each strand between the guides has of its own.
+        frizz: f32 = 0.0011, in [0.0, 0.05] "m", slider [0.0, 0.01], more "frizzier hair";
+        /// Share of the strands between the guides that leave their lock.
+        strays: f32 = 0.04, in [0.0, 1.0], slider [0.0, 0.2], more "more strays";
+        /// Share of the length by which the ends of locks and of strands between the guides differ.
+        thinning: f32 = 0.07, in [0.0, 0.9], slider [0.0, 0.3], more "thinner, softer ends";
+        /// Breadth of the hairline, along which hair grows denser, longer and thicker.
+        hairline: f32 = 0.009, in [0.0, 0.05] "m", slider [0.0, 0.02], more "a softer hairline";
     }
     prepare StyleSettings::prepare;
 }
@@ -72,6 +83,7 @@ impl StyleSettings {
             volume: 0.016,
             clump_share: 0.15,
             noise: 0.0015,
+            thinning: 0.03,
             ..self
         }
     }
@@ -83,6 +95,7 @@ impl StyleSettings {
             parting: 0.02,
             clump_width: 0.022,
             clump_share: 0.55,
+            lock_share: 0.6,
             wave_amplitude: 0.011,
             wave_length: 0.095,
             ..self
@@ -102,6 +115,10 @@ impl StyleSettings {
             curl_radius: 0.0085,
             curl_length: 0.06,
             noise: 0.005,
+            lock_share: 0.85,
+            frizz: 0.0011,
+            strays: 0.06,
+            thinning: 0.12,
             ..self
         }
     }
@@ -117,6 +134,8 @@ impl StyleSettings {
             clump_width: 0.0155,
             clump_share: 0.35,
             noise: 0.004,
+            frizz: 0.0009,
+            thinning: 0.15,
             ..self
         }
     }
@@ -132,6 +151,9 @@ impl StyleSettings {
             wave_amplitude: 0.003,
             wave_length: 0.12,
             noise: 0.002,
+            frizz: 0.0008,
+            strays: 0.03,
+            thinning: 0.15,
             ..self
         }
     }

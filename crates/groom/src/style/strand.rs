@@ -10,6 +10,8 @@ pub const CLEARANCE: f32 = 0.0015;
 pub struct Strand {
     /// Its root.
     pub root: Root,
+    /// The side of the parting that it falls to, -1 or 1.
+    pub side: f32,
     /// Its points \[m\], evenly spaced.
     pub points: Vec<Vec3>,
 }

@@ -11,15 +11,26 @@ use crate::{
     sim::Settings,
 };
 
+/// Strands that a style grows for each guide.
+const GROWN: usize = 8;
+/// Drawn strands of each guide of a style: its own, and follow strands between them.
+const DRAWN: usize = 16;
+
 impl Scene {
+    /// Strands that the scene's style grows in all.
+    pub(crate) fn grown_strands(&self) -> usize {
+        grown(self.style.strand_count, self.groom.bound)
+    }
+
     /// The demo: the default style shakes its head for 4 s. An empty scene file is the same scene.
     pub fn demo() -> Self {
         Self::default()
     }
 
     /// Replaces the strands by a built-in style, with as many points on a guide as its curls need
-    /// (`groom.points_per_strand`) and a drawn segment about every centimetre
-    /// (`level_of_detail.segments_per_span`). A file that names a style and neither of these gets the same.
+    /// (`groom.points_per_strand`), a drawn segment about every centimetre
+    /// (`level_of_detail.segments_per_span`) and 16 drawn strands for each guide (`look.follow_strands`). A file that
+    /// names a style and none of these gets the same.
     pub fn set_style(&mut self, style: Style) {
         let (seed, strand_count) = (self.style.seed, self.style.strand_count);
         self.groom.file = None;
@@ -33,6 +44,7 @@ impl Scene {
         };
         self.groom.points_per_strand = points;
         self.level_of_detail.segments_per_span = segments;
+        self.look.follow_strands = filling(strand_count, self.groom.bound);
     }
 
     /// Sets tone map and background that go with the look of the thesis.
@@ -47,7 +59,7 @@ impl Scene {
     pub fn thesis() -> Self {
         // Six points bend over the skull only when they are not far apart: a bob.
         let mut scene = Self {
-            groom: GroomSection { points_per_strand: 6, ..GroomSection::default() },
+            groom: GroomSection { points_per_strand: 6, bound: Some(0), ..GroomSection::default() },
             style: StyleSettings { strand_count: 1750, ..StyleSettings::new(Style::Bob) },
             simulation: Settings::thesis(),
             film: FilmSection { settle: FilmSection::SETTLE, ..FilmSection::default() },
@@ -61,6 +73,17 @@ impl Scene {
         (scene.picture.width, scene.picture.height) = (800, 600);
         scene
     }
+}
+
+/// Strands that a style of some guides grows in all.
+fn grown(guides: usize, bound: Option<u32>) -> usize {
+    bound.map_or(GROWN.saturating_mul(guides), |bound| guides.max(bound as usize))
+}
+
+/// Follow strands that fill the hair of a style of some guides.
+pub(super) fn filling(guides: usize, bound: Option<u32>) -> u32 {
+    let wanted = DRAWN.saturating_mul(guides);
+    wanted.div_ceil(grown(guides, bound).max(1)).clamp(1, DRAWN) as u32
 }
 
 impl FromStr for Scene {
