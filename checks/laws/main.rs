@@ -34,7 +34,7 @@ mod small_motion;
 mod spans;
 mod springs;
 mod strands;
-mod styles;
 mod stretch;
+mod styles;
 mod transfer;
 mod volume;

@@ -8,9 +8,10 @@ use strandline_base::memory::{self, Need};
 use strandline_base::par::prelude::*;
 use strandline_body::{Mannequin, Random, Root, SignedDistance};
 
-use super::hair::{self, Between};
-use super::locks::{self, Shaped};
 use super::comb::{Combed, Place, TIE_RADIUS, smooth};
+use super::face;
+use super::hair;
+use super::locks::{self, Shaped};
 use super::strand::{CLEARANCE, Strand, outside};
 use super::{Style, StyleSettings, finish};
 use crate::arcs::equal_arcs;
@@ -20,6 +21,8 @@ use crate::{Groom, GroomError, Widths};
 const STEP: f32 = 0.004;
 /// Share of the old direction kept in each step: hair is stiff.
 const STIFFNESS: f32 = 0.72;
+/// The same of hair that is wound or plaited.
+const WOUND: f32 = 0.35;
 /// Diameter of a hair \[m\].
 pub const WIDTH: f32 = 8e-5;
 /// Way \[m\] over which hair rises from its root to the full thickness of the hair.
@@ -51,6 +54,12 @@ impl StyleSettings {
         self.validate()?;
         memory::check(&[self.memory(drawn)])?;
         let mannequin = Mannequin::new();
+        let more = drawn.saturating_sub(self.strand_count);
+        if self.style.is_of_face() {
+            let grown = face::strands(self, &mannequin, 0, self.strand_count.max(drawn));
+            let grown = grown.into_iter().map(|strand| Grown::new(strand, 0));
+            return Ok(groom(grown.collect(), self.strand_count));
+        }
         let roots = mannequin.scalp().roots(self.strand_count, self.seed);
         let combed: Vec<Strand> = roots
             .into_par_iter()
@@ -58,50 +67,48 @@ impl StyleSettings {
             .map(|(index, root)| march(self, &mannequin, index, beside_parting(self, &mannequin, root)))
             .collect();
         let (guides, clumps) = finish::finish(self, &mannequin, &combed);
-        let mut grown = Grown::new(&guides, &clumps);
-        if drawn > guides.len() {
-            let hair = hair::between(self, &mannequin, &combed, drawn - guides.len());
-            grown.add(&hair, locks::shape(self, &mannequin, &combed, &clumps, &hair), &clumps);
+        let mut grown: Vec<Grown> =
+            guides.into_iter().zip(&clumps).map(|(strand, clump)| Grown::new(strand, *clump)).collect();
+        if more > 0 {
+            let hair = hair::between(self, &mannequin, &combed, more);
+            let shaped = locks::shape(self, &mannequin, &combed, &clumps, &hair);
+            grown.extend(hair.into_iter().zip(shaped).map(|(own, Shaped { points, width })| Grown {
+                width,
+                ..Grown::new(Strand { points, ..own.strand }, clumps[own.guide])
+            }));
         }
-        Ok(grown.groom)
+        Ok(groom(grown, self.strand_count))
     }
 }
 
-/// A groom while strands are put into it.
+/// A grown strand with its diameter \[m\] and its lock.
 struct Grown {
-    groom: Groom,
+    strand: Strand,
+    width: f32,
+    clump: u32,
 }
 
 impl Grown {
-    /// Of guides and their clumps.
-    fn new(guides: &[Strand], clumps: &[u32]) -> Self {
-        let mut groom = Groom::empty(WIDTH);
-        groom.widths = Widths::Constant(WIDTH);
-        for strand in guides {
-            groom.push(strand.points.iter().copied());
-        }
-        groom.root_uvs = Some(guides.iter().map(|strand| strand.root.uv).collect());
-        groom.root_normals = Some(guides.iter().map(|strand| strand.root.normal).collect());
-        groom.groups = Some(clumps.to_vec());
-        Self { groom }
+    fn new(strand: Strand, clump: u32) -> Self {
+        Self { strand, width: WIDTH, clump }
     }
+}
 
-    /// Adds strands between guides, and marks these.
-    fn add(&mut self, hair: &[Between], shaped: Vec<Shaped>, clumps: &[u32]) {
-        let groom = &mut self.groom;
-        let guide_count = groom.strand_count();
-        let mut widths = vec![WIDTH; guide_count];
-        for one in shaped {
-            groom.push(one.points);
-            widths.push(one.width);
-        }
-        groom.widths = Widths::PerStrand(widths);
-        groom.guide_flags = Some((0..groom.strand_count()).map(|strand| strand < guide_count).collect());
-        let roots = hair.iter().map(|own| own.strand.root);
-        groom.root_uvs.iter_mut().for_each(|uvs| uvs.extend(roots.clone().map(|root| root.uv)));
-        groom.root_normals.iter_mut().for_each(|all| all.extend(roots.clone().map(|root| root.normal)));
-        groom.groups.iter_mut().for_each(|all| all.extend(hair.iter().map(|own| clumps[own.guide])));
+/// The groom of strands; the first are guides, and marked where there are others.
+fn groom(grown: Vec<Grown>, guide_count: usize) -> Groom {
+    let mut groom = Groom::empty(WIDTH);
+    for one in &grown {
+        groom.push(one.strand.points.iter().copied());
     }
+    groom.widths = Widths::Constant(WIDTH);
+    if grown.len() > guide_count {
+        groom.widths = Widths::PerStrand(grown.iter().map(|one| one.width).collect());
+        groom.guide_flags = Some((0..grown.len()).map(|strand| strand < guide_count).collect());
+    }
+    groom.root_uvs = Some(grown.iter().map(|one| one.strand.root.uv).collect());
+    groom.root_normals = Some(grown.iter().map(|one| one.strand.root.normal).collect());
+    groom.groups = Some(grown.iter().map(|one| one.clump).collect());
+    groom
 }
 
 impl StyleSettings {
@@ -119,7 +126,7 @@ impl StyleSettings {
 pub(super) fn beside_parting(settings: &StyleSettings, mannequin: &Mannequin, root: Root) -> Root {
     let across = root.position.x - settings.parting;
     let share = across.abs() / PARTING_REACH;
-    if matches!(settings.style, Style::Pixie | Style::Ponytail) || share >= 1.0 || root.position.y < 0.0 {
+    if !settings.style.is_parted() || share >= 1.0 || root.position.y < 0.0 {
         return root;
     }
     let mut drawn = root.position;
@@ -148,7 +155,8 @@ fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, roo
         let (distance, out) = covered(settings, mannequin, point);
         let place = Place { point, distance, out, passed: passed_tie };
         let wanted = combed.direction(settings, place).normalize_or(Vec3::NEG_Y);
-        direction = (direction * STIFFNESS + wanted * (1.0 - STIFFNESS)).normalize_or(wanted);
+        let kept = if combed.tied && settings.style != Style::Ponytail { WOUND } else { STIFFNESS };
+        direction = (direction * kept + wanted * (1.0 - kept)).normalize_or(wanted);
         let rise = smooth(0.0, RISE, step as f32 * STEP);
         let clearance = if combed.tied { CLEARANCE } else { CLEARANCE + thickness * rise };
         // A direction into the skin is turned along it before the hair comes too near.
@@ -161,7 +169,7 @@ fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, roo
         point = uncovered(settings, mannequin, point + direction * STEP, least);
         direction = (point - before).normalize_or(direction);
         points.push(point);
-        if settings.style == Style::Ponytail {
+        if settings.style.is_tied() {
             let left = combed.tie().distance(point);
             combed.tied |= left < 1.2 * TIE_RADIUS;
             passed_tie += if combed.tied { STEP } else { 0.0 };
@@ -180,14 +188,13 @@ fn leaving(settings: &StyleSettings, combed: &Combed) -> Vec3 {
     let normal = combed.root.normal;
     let place = Place { point: combed.root.position, distance: 0.0, out: normal, passed: 0.0 };
     let flow = combed.direction(settings, place).normalize_or(normal);
-    let lift = if settings.style == Style::Ponytail { 0.25 } else { 0.6 };
+    let lift = if settings.style.is_tied() { 0.25 } else { 0.6 };
     // Beside the parting hair rises before it falls to its side, which hides the skin.
-    let beside = match settings.style {
-        Style::Pixie | Style::Ponytail => 0.0,
-        _ => {
-            smooth(0.012, 0.0, (combed.root.position.x - settings.parting).abs())
-                * smooth(-0.02, 0.03, combed.root.position.y)
-        }
+    let beside = if settings.style.is_parted() {
+        smooth(0.012, 0.0, (combed.root.position.x - settings.parting).abs())
+            * smooth(-0.02, 0.03, combed.root.position.y)
+    } else {
+        0.0
     };
     (normal * (lift + 0.45 * beside) + flow * (1.0 - 0.6 * beside)).normalize_or(normal)
 }
@@ -203,7 +210,7 @@ fn style_length(settings: &StyleSettings, root: &Root) -> f32 {
 /// Distance \[m\] and direction away from the skin, ears smoothed over where hair falls across them.
 fn covered(settings: &StyleSettings, mannequin: &Mannequin, point: Vec3) -> (f32, Vec3) {
     let (distance, out) = mannequin.distance_and_gradient(point);
-    if matches!(settings.style, Style::Pixie | Style::Ponytail) {
+    if !settings.style.is_parted() {
         return (distance, out);
     }
     let side = Vec3::new(point.x.signum(), 1.0, 1.0);

@@ -7,11 +7,11 @@ use strandline_base::math;
 use strandline_base::par::prelude::*;
 use strandline_body::{Mannequin, Random, Root, Scalp};
 
+use super::StyleSettings;
 use super::comb::{WHORL, smooth};
 use super::grow::beside_parting;
 use super::near::Near;
 use super::strand::Strand;
-use super::{Style, StyleSettings};
 
 /// Guides that a strand runs with at most.
 const WITH: usize = 3;
@@ -102,7 +102,8 @@ fn beside(
 ) -> (Strand, usize) {
     let mut random = Random::new(settings.seed, 5_000_000_000 + index as u64);
     let side = side(settings, &root, &mut random);
-    let parted = if settings.style.is_parted() { smooth(WHORL.z, WHORL.z + 0.03, root.position.z) } else { 0.0 };
+    let parted =
+        if settings.style.is_parted() { smooth(WHORL.z, WHORL.z + 0.03, root.position.z) } else { 0.0 };
     let other_side = |guide: usize| if guides[guide].side == side { 0.0 } else { OTHER_SIDE * parted };
     let found = near.nearest::<WITH>(root.position, other_side);
     let first = &guides[found[0].0];
@@ -117,13 +118,14 @@ fn beside(
     let weights = weights.map(|weight| weight / sum.max(f32::MIN_POSITIVE));
     let mut points: Vec<Vec3> = (0..first.points.len())
         .map(|point| {
-            let of = found.iter().zip(&weights).map(|((guide, _), weight)| guides[*guide].points[point] * *weight);
+            let of =
+                found.iter().zip(&weights).map(|((guide, _), weight)| guides[*guide].points[point] * *weight);
             of.sum()
         })
         .collect();
     let aside = root.position - points[0];
     let last = points.len() - 1;
-    let closes = if settings.style == Style::Ponytail { 0.85 } else { 0.3 };
+    let closes = if settings.style.is_tied() { 0.85 } else { 0.3 };
     for (point, place) in points.iter_mut().enumerate() {
         let share = point as f32 / last as f32;
         *place += aside * (1.0 - closes * smooth(0.0, 0.4, share));

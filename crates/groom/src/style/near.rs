@@ -29,7 +29,11 @@ impl Near {
 
     /// The `COUNT` nearest places by their distance \[m\] and what `more` adds to it, nearest first: indices and
     /// distances, infinite where there are fewer places. Of places that are equally near the first counts.
-    pub fn nearest<const COUNT: usize>(&self, at: Vec3, more: impl Fn(usize) -> f32) -> [(usize, f32); COUNT] {
+    pub fn nearest<const COUNT: usize>(
+        &self,
+        at: Vec3,
+        more: impl Fn(usize) -> f32,
+    ) -> [(usize, f32); COUNT] {
         let mut found = [(0, f32::INFINITY); COUNT];
         let middle = (at / self.side).floor().as_ivec3();
         for ring in 0..=RINGS {

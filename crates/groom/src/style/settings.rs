@@ -47,7 +47,7 @@ settings! {
         /// drawn at the tip.
         lock_share: f32 = 0.4, in [0.0, 1.0], more "finer, clearer locks";
         /// Mean amplitude of the waves that each strand between the guides has of its own.
-        frizz: f32 = 0.0011, in [0.0, 0.05] "m", slider [0.0, 0.01], more "frizzier hair";
+        frizz: f32 = 0.0014, in [0.0, 0.05] "m", slider [0.0, 0.01], more "frizzier hair";
         /// Share of the strands between the guides that leave their lock.
         strays: f32 = 0.04, in [0.0, 1.0], slider [0.0, 0.2], more "more strays";
         /// Share of the length by which the ends of locks and of strands between the guides differ.
@@ -69,6 +69,14 @@ impl StyleSettings {
             Style::Curly => plain.curly(),
             Style::Pixie => plain.pixie(),
             Style::Ponytail => plain.ponytail(),
+            Style::Buzz => plain.buzz(),
+            Style::SideSwept => plain.side_swept(),
+            Style::Afro => plain.afro(),
+            Style::Coils => plain.coils(),
+            Style::Bun => plain.bun(),
+            Style::Braid => plain.braid(),
+            Style::Beard => plain.beard(),
+            Style::Brows => plain.brows(),
         }
     }
 
@@ -158,6 +166,128 @@ impl StyleSettings {
         }
     }
 
+    fn buzz(self) -> Self {
+        Self {
+            length: 0.012,
+            length_variation: 0.2,
+            cut_height: -0.2,
+            swirl: 0.35,
+            volume: 0.008,
+            clump_share: 0.1,
+            noise: 0.001,
+            lock_share: 0.1,
+            frizz: 0.0003,
+            strays: 0.0,
+            ..self
+        }
+    }
+
+    fn side_swept(self) -> Self {
+        Self {
+            length: 0.26,
+            length_variation: 0.15,
+            cut_height: -0.13,
+            layering: 0.06,
+            turn_under: 0.3,
+            parting: 0.034,
+            volume: 0.021,
+            clump_share: 0.45,
+            wave_amplitude: 0.006,
+            wave_length: 0.12,
+            lock_share: 0.5,
+            thinning: 0.1,
+            ..self
+        }
+    }
+
+    fn afro(self) -> Self {
+        Self {
+            length: 0.075,
+            length_variation: 0.2,
+            cut_height: -0.2,
+            layering: 0.0,
+            volume: 0.02,
+            clump_width: 0.009,
+            clump_share: 0.3,
+            curl_radius: 0.0032,
+            curl_length: 0.015,
+            noise: 0.004,
+            lock_share: 0.35,
+            frizz: 0.002,
+            strays: 0.06,
+            thinning: 0.12,
+            ..self
+        }
+    }
+
+    fn coils(self) -> Self {
+        Self {
+            length: 0.24,
+            length_variation: 0.3,
+            cut_height: -0.15,
+            layering: 0.10,
+            parting: -0.015,
+            volume: 0.034,
+            clump_width: 0.011,
+            clump_share: 0.75,
+            curl_radius: 0.0048,
+            curl_length: 0.030,
+            noise: 0.004,
+            lock_share: 0.85,
+            frizz: 0.0009,
+            strays: 0.06,
+            thinning: 0.12,
+            ..self
+        }
+    }
+
+    fn bun(self) -> Self {
+        Self {
+            length: 0.42,
+            length_variation: 0.25,
+            cut_height: -0.25,
+            volume: 0.009,
+            clump_share: 0.1,
+            noise: 0.001,
+            lock_share: 0.3,
+            frizz: 0.0005,
+            strays: 0.02,
+            ..self
+        }
+    }
+
+    fn braid(self) -> Self {
+        Self {
+            length: 0.75,
+            length_variation: 0.05,
+            cut_height: -0.30,
+            volume: 0.009,
+            clump_share: 0.1,
+            noise: 0.001,
+            lock_share: 0.3,
+            frizz: 0.0005,
+            strays: 0.025,
+            thinning: 0.1,
+            ..self
+        }
+    }
+
+    fn beard(self) -> Self {
+        Self {
+            length: 0.022,
+            length_variation: 0.5,
+            volume: 0.005,
+            curl_radius: 0.0008,
+            curl_length: 0.016,
+            noise: 0.004,
+            ..self
+        }
+    }
+
+    fn brows(self) -> Self {
+        Self { length: 0.010, length_variation: 0.35, volume: 0.001, noise: 0.001, ..self }
+    }
+
     /// A missing key has the value of its style.
     fn prepare(&mut self, given: &<Self as Value>::Given) {
         if let Some(style) = given.style {
@@ -167,7 +297,9 @@ impl StyleSettings {
 
     /// Points of a grown strand: more where it bends more.
     pub(super) fn points(&self) -> usize {
-        if self.curl_radius > 0.0 {
+        if self.style.is_of_face() {
+            10
+        } else if self.curl_radius > 0.0 || matches!(self.style, Style::Bun | Style::Braid) {
             64
         } else if self.wave_amplitude > 0.0 {
             32

@@ -58,13 +58,17 @@ pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
     Ok(())
 }
 
+/// Room of follow strands over that between the strands of a style: they fill what lies between, and are no copies beside
+/// them.
+const ROOM: f32 = 1.8;
+
 /// Factors of the spread of drawn strands: between the many strands of a style less room is left than between its
 /// guides.
 fn narrowed(spreads: Option<Vec<f32>>, scene: &Scene, simulated: usize, grown: usize) -> Option<Vec<f32>> {
     if scene.groom.file.is_some() || simulated >= grown {
         return spreads;
     }
-    let share = (simulated as f32 / grown as f32).sqrt();
+    let share = ROOM * (simulated as f32 / grown as f32).sqrt();
     let own = |spreads: Vec<f32>| spreads.into_iter().map(|spread| share * spread).collect();
     Some(spreads.map_or_else(|| vec![share; grown], own))
 }

@@ -38,12 +38,23 @@ impl Scene {
         self.begin_at_rest();
         self.style = StyleSettings { seed, strand_count, ..StyleSettings::new(style) };
         let (points, segments) = match style {
-            Style::Curly => (56, 1),
-            Style::Wavy => (28, 2),
+            Style::Curly | Style::Coils | Style::Braid => (56, 1),
+            Style::Afro | Style::Bun => (48, 1),
+            Style::Wavy | Style::SideSwept => (28, 2),
+            Style::Buzz | Style::Beard | Style::Brows => (8, 2),
             Style::Pixie | Style::Ponytail | Style::Bob | Style::Long => (16, 3),
         };
         self.groom.points_per_strand = points;
         self.level_of_detail.segments_per_span = segments;
+        // Hairs of a face are fewer than those of a head; other numbers are the user's.
+        let hairs = |style| match style {
+            Style::Beard => 25_000,
+            Style::Brows => 1_500,
+            _ => 100_000,
+        };
+        if Style::ALL.into_iter().any(|style| hairs(style) == self.look.hair_count) {
+            self.look.hair_count = hairs(style);
+        }
         self.look.follow_strands = filling(strand_count, self.groom.bound);
     }
 
