@@ -80,10 +80,11 @@ mod tests {
         let places: Vec<Vec3> =
             (0..300).map(|_| 0.1 * Vec3::new(random.signed(), random.signed(), 0.0)).collect();
         let near = Near::new(places.clone(), 0.04);
+        let more = |index: usize| if index.is_multiple_of(5) { 0.02 } else { 0.0 };
         for _ in 0..50 {
             let at = 0.12 * Vec3::new(random.signed(), random.signed(), 0.1);
-            let found = near.nearest::<3>(at, |index| if index % 5 == 0 { 0.02 } else { 0.0 });
-            let far = |index: usize| places[index].distance(at) + if index % 5 == 0 { 0.02 } else { 0.0 };
+            let found = near.nearest::<3>(at, more);
+            let far = |index: usize| places[index].distance(at) + more(index);
             let mut all: Vec<usize> = (0..300).collect();
             all.sort_by(|one, two| far(*one).total_cmp(&far(*two)));
             assert_eq!(found.map(|(index, _)| index), [all[0], all[1], all[2]]);

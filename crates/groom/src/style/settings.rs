@@ -47,7 +47,7 @@ settings! {
         /// drawn at the tip.
         lock_share: f32 = 0.4, in [0.0, 1.0], more "finer, clearer locks";
         /// Mean amplitude of the waves that each strand between the guides has of its own.
-        frizz: f32 = 0.0014, in [0.0, 0.05] "m", slider [0.0, 0.01], more "frizzier hair";
+        frizz: f32 = 0.0017, in [0.0, 0.05] "m", slider [0.0, 0.01], more "frizzier hair";
         /// Share of the strands between the guides that leave their lock.
         strays: f32 = 0.04, in [0.0, 1.0], slider [0.0, 0.2], more "more strays";
         /// Share of the length by which the ends of locks and of strands between the guides differ.
@@ -142,7 +142,7 @@ impl StyleSettings {
             clump_width: 0.0155,
             clump_share: 0.35,
             noise: 0.004,
-            frizz: 0.0009,
+            frizz: 0.0012,
             thinning: 0.15,
             ..self
         }
@@ -159,7 +159,7 @@ impl StyleSettings {
             wave_amplitude: 0.003,
             wave_length: 0.12,
             noise: 0.002,
-            frizz: 0.0008,
+            frizz: 0.0014,
             strays: 0.03,
             thinning: 0.15,
             ..self
@@ -250,7 +250,7 @@ impl StyleSettings {
             clump_share: 0.1,
             noise: 0.001,
             lock_share: 0.3,
-            frizz: 0.0005,
+            frizz: 0.001,
             strays: 0.02,
             ..self
         }
@@ -265,7 +265,7 @@ impl StyleSettings {
             clump_share: 0.1,
             noise: 0.001,
             lock_share: 0.3,
-            frizz: 0.0005,
+            frizz: 0.001,
             strays: 0.025,
             thinning: 0.1,
             ..self
@@ -297,7 +297,7 @@ impl StyleSettings {
 
     /// Points of a grown strand: more where it bends more.
     pub(super) fn points(&self) -> usize {
-        if self.style.is_of_face() {
+        if self.style.is_of_face() || self.style == Style::Buzz {
             10
         } else if self.curl_radius > 0.0 || matches!(self.style, Style::Bun | Style::Braid) {
             64
