@@ -12,7 +12,7 @@ use super::comb::{Combed, Place, TIE_RADIUS, smooth};
 use super::face;
 use super::hair;
 use super::locks::{self, Shaped};
-use super::strand::{CLEARANCE, Strand, outside};
+use super::strand::{CLEARANCE, Strand, WIDTH, beside_parting, outside};
 use super::{Style, StyleSettings, finish};
 use crate::arcs::equal_arcs;
 use crate::{Groom, GroomError, Widths};
@@ -23,13 +23,8 @@ const STEP: f32 = 0.004;
 const STIFFNESS: f32 = 0.72;
 /// The same of hair that is wound or plaited.
 const WOUND: f32 = 0.35;
-/// Diameter of a hair \[m\].
-pub const WIDTH: f32 = 8e-5;
 /// Way \[m\] over which hair rises from its root to the full thickness of the hair.
 const RISE: f32 = 0.10;
-
-/// Distance \[m\] from the parting within which roots are drawn toward it.
-const PARTING_REACH: f32 = 0.014;
 
 /// A dome over the ear: centre on the side of positive x and half axes \[m\].
 const EAR_DOME: (Vec3, Vec3) = (Vec3::new(0.062, -0.026, -0.012), Vec3::new(0.033, 0.056, 0.050));
@@ -120,19 +115,6 @@ impl StyleSettings {
         let key = if drawn > self.strand_count { "groom.bound" } else { "style.strand_count" };
         Need::new(format!("{key} = {count}"), count as u64, each)
     }
-}
-
-/// Draws roots near the parting toward it, so that it is a line and not a lane.
-pub(super) fn beside_parting(settings: &StyleSettings, mannequin: &Mannequin, root: Root) -> Root {
-    let across = root.position.x - settings.parting;
-    let share = across.abs() / PARTING_REACH;
-    if !settings.style.is_parted() || share >= 1.0 || root.position.y < 0.0 {
-        return root;
-    }
-    let mut drawn = root.position;
-    drawn.x = settings.parting + across * share.sqrt();
-    let (position, normal) = mannequin.nearest_skin(drawn);
-    Root { position, normal, ..root }
 }
 
 /// One strand, from its root to where it is cut.

@@ -9,9 +9,8 @@ use strandline_body::{Mannequin, Random, Root, Scalp};
 
 use super::StyleSettings;
 use super::comb::{WHORL, smooth};
-use super::grow::beside_parting;
 use super::near::Near;
-use super::strand::Strand;
+use super::strand::{Strand, beside_parting};
 
 /// Guides that a strand runs with at most.
 const WITH: usize = 3;

@@ -10,9 +10,8 @@ use strandline_body::{Mannequin, Random};
 use super::StyleSettings;
 use super::comb::smooth;
 use super::finish::{Bends, frames};
-use super::grow::WIDTH;
 use super::hair::Between;
-use super::strand::{CLEARANCE, Strand, outside};
+use super::strand::{CLEARANCE, Strand, WIDTH, outside};
 use crate::arcs::equal_arcs;
 
 /// Strands of a small lock: neighbours on the skin.

@@ -47,7 +47,7 @@ settings! {
         /// drawn at the tip.
         lock_share: f32 = 0.4, in [0.0, 1.0], more "finer, clearer locks";
         /// Mean amplitude of the waves that each strand between the guides has of its own.
-        frizz: f32 = 0.0017, in [0.0, 0.05] "m", slider [0.0, 0.01], more "frizzier hair";
+        frizz: f32 = 0.0026, in [0.0, 0.05] "m", slider [0.0, 0.01], more "frizzier hair";
         /// Share of the strands between the guides that leave their lock.
         strays: f32 = 0.04, in [0.0, 1.0], slider [0.0, 0.2], more "more strays";
         /// Share of the length by which the ends of locks and of strands between the guides differ.
@@ -91,6 +91,7 @@ impl StyleSettings {
             volume: 0.016,
             clump_share: 0.15,
             noise: 0.0015,
+            frizz: 0.0017,
             thinning: 0.03,
             ..self
         }
@@ -104,6 +105,7 @@ impl StyleSettings {
             clump_width: 0.022,
             clump_share: 0.55,
             lock_share: 0.6,
+            frizz: 0.0017,
             wave_amplitude: 0.011,
             wave_length: 0.095,
             ..self
@@ -195,6 +197,7 @@ impl StyleSettings {
             wave_amplitude: 0.006,
             wave_length: 0.12,
             lock_share: 0.5,
+            frizz: 0.0017,
             thinning: 0.1,
             ..self
         }

@@ -3,6 +3,7 @@ use std::str::FromStr;
 use glam::Vec3;
 use strandline_base::SettingError;
 
+use super::groom::{filling, grown};
 use super::{FilmSection, GroomSection, MotionName, Scene};
 use crate::{
     Error,
@@ -10,11 +11,6 @@ use crate::{
     render::{Background, LevelOfDetail, Preset, ToneMap},
     sim::Settings,
 };
-
-/// Strands that a style grows for each guide.
-const GROWN: usize = 8;
-/// Drawn strands of each guide of a style: its own, and follow strands between them.
-const DRAWN: usize = 16;
 
 impl Scene {
     /// Strands that the scene's style grows in all.
@@ -84,17 +80,6 @@ impl Scene {
         (scene.picture.width, scene.picture.height) = (800, 600);
         scene
     }
-}
-
-/// Strands that a style of some guides grows in all.
-fn grown(guides: usize, bound: Option<u32>) -> usize {
-    bound.map_or(GROWN.saturating_mul(guides), |bound| guides.max(bound as usize))
-}
-
-/// Follow strands that fill the hair of a style of some guides.
-pub(super) fn filling(guides: usize, bound: Option<u32>) -> u32 {
-    let wanted = DRAWN.saturating_mul(guides);
-    wanted.div_ceil(grown(guides, bound).max(1)).clamp(1, DRAWN) as u32
 }
 
 impl FromStr for Scene {

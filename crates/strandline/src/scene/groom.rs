@@ -86,3 +86,19 @@ settings! {
         pose: Option<PathBuf> = None;
     }
 }
+
+/// Strands that a style grows for each guide.
+const GROWN: usize = 8;
+/// Drawn strands of each guide of a style: its own, and follow strands between them.
+const DRAWN: usize = 16;
+
+/// Strands that a style of some guides grows in all.
+pub(super) fn grown(guides: usize, bound: Option<u32>) -> usize {
+    bound.map_or(GROWN.saturating_mul(guides), |bound| guides.max(bound as usize))
+}
+
+/// Follow strands that fill the hair of a style of some guides.
+pub(super) fn filling(guides: usize, bound: Option<u32>) -> u32 {
+    let wanted = DRAWN.saturating_mul(guides);
+    wanted.div_ceil(grown(guides, bound).max(1)).clamp(1, DRAWN) as u32
+}

@@ -115,7 +115,7 @@ impl Scene {
             let guides = given.style.as_ref().and_then(|style| style.strand_count);
             let bound = given.groom.as_ref().and_then(|groom| groom.bound);
             let guides = guides.unwrap_or(self.style.strand_count);
-            self.look.follow_strands = builtin::filling(guides, bound);
+            self.look.follow_strands = groom::filling(guides, bound);
         } else {
             self.groom.points_per_strand = GroomSection::default().points_per_strand;
             self.level_of_detail.segments_per_span = LevelOfDetail::default().segments_per_span;
