@@ -36,6 +36,7 @@ mod spans;
 mod springs;
 mod strands;
 mod stretch;
+mod styles;
 mod ties;
 mod transfer;
 mod volume;

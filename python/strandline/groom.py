@@ -301,7 +301,8 @@ def load(
 
 
 def grow(style: str = "long", **settings: Any) -> Groom:
-    """Grows a built-in style on the built-in bust: bob, long, wavy, curly, pixie or ponytail. Keywords are the settings of
-    the section ``style``: ``grow("bob", strand_count=500, seed=3)``."""
+    """Grows a built-in style on the built-in bust: bob, long, wavy, curly, pixie, ponytail, buzz, side_swept, afro,
+    coils, bun, braid, beard or brows. Keywords are the settings of the section ``style``:
+    ``grow("bob", strand_count=500, seed=3)``."""
     scene = Scene({"style": {"style": style, **settings}})
     return Groom._of(_native.grow(_toml.document(scene.given)))

@@ -125,7 +125,8 @@ class Style(TypedDict, total=False):
     """Settings of a grown style. The default of every number but the first two is that of the style."""
 
     style: str
-    """The style. Allowed: one of bob, long, wavy, curly, pixie, ponytail."""
+    """The style. Allowed: one of bob, long, wavy, curly, pixie, ponytail, buzz, side_swept, afro,
+    coils, bun, braid, beard, brows."""
 
     strand_count: int
     """Number of strands: guides for the renderer's follow strands. Allowed: 1 to 8,000,000."""

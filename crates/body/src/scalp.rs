@@ -42,6 +42,8 @@ const LOWEST: f32 = 2.55;
 const EAR_MARGIN: f32 = 0.0025;
 /// Candidates for each root.
 const CANDIDATES: usize = 4;
+/// Candidates for each root among others: with fewer growing is faster, and roots are less even.
+const CANDIDATES_AMONG: usize = 3;
 /// Up to this count roots are chosen by elimination; above it one in each stretch of a space-filling curve.
 const ELIMINATED: usize = 60_000;
 
@@ -88,6 +90,17 @@ impl Scalp {
         position.y - hairline::height(math::atan2(position.x.abs(), position.z))
     }
 
+    /// Distance \[m\] of a place on the scalp from its border, to a few parts in ten.
+    pub fn depth(&self, position: Vec3) -> f32 {
+        let azimuth = math::atan2(position.x.abs(), position.z);
+        // The hairline is steep at the temples: a height above it is more than the distance.
+        let around = position.with_y(0.0).length().max(1e-3);
+        let beside = hairline::height(azimuth + 0.06) - hairline::height(azimuth - 0.06);
+        let slope = beside / (0.12 * around);
+        let from_hairline = self.height_above_hairline(position) / (1.0 + slope * slope).sqrt();
+        from_hairline.min(self.mannequin.ear_distance(position) - EAR_MARGIN)
+    }
+
     /// Area \[m^2\], to a few parts in a hundred.
     pub fn area(&self) -> f32 {
         let cells = (0..POLARS * AZIMUTHS).filter(|&cell| {
@@ -110,13 +123,26 @@ impl Scalp {
         candidates.par_sort_by_cached_key(|root| curve_index(root.uv));
         if count <= ELIMINATED {
             let positions: Vec<Vec3> = candidates.iter().map(|root| root.position).collect();
-            let kept = elimination::kept(&positions, count);
+            let kept = elimination::kept(&positions, 0, count);
             return kept.into_iter().map(|index| candidates[index]).collect();
         }
         let stretches = candidates.par_chunks(CANDIDATES).enumerate();
         stretches
             .map(|(index, roots)| roots[Random::new(seed, index as u64).bits() as usize % CANDIDATES])
             .collect()
+    }
+
+    /// `count` further roots among others, spread evenly (blue noise) with them, as in [`Scalp::roots`]. More than
+    /// 60,000 in all take no notice of the others.
+    pub fn roots_among(&self, others: &[Root], count: usize, seed: u64) -> Vec<Root> {
+        if others.len() + count > ELIMINATED {
+            return self.roots(count, seed);
+        }
+        let mut candidates = self.candidates(count * CANDIDATES_AMONG, seed);
+        candidates.par_sort_by_cached_key(|root| curve_index(root.uv));
+        let positions: Vec<Vec3> = others.iter().chain(&candidates).map(|root| root.position).collect();
+        let kept = elimination::kept(&positions, others.len(), others.len() + count);
+        kept.into_iter().skip(others.len()).map(|index| candidates[index - others.len()]).collect()
     }
 
     /// Independent random places, equally likely everywhere on the scalp.

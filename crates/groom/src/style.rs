@@ -1,8 +1,12 @@
 //! Styles grown on the built-in mannequin.
 
 mod comb;
+mod face;
 mod finish;
 mod grow;
+mod hair;
+mod locks;
+mod near;
 mod settings;
 mod strand;
 
@@ -25,6 +29,43 @@ choices! {
         Pixie = "pixie",
         /// Combed back and tied, with a falling tail.
         Ponytail = "ponytail",
+        /// A centimetre all over, standing off the skin.
+        Buzz = "buzz",
+        /// To the jaw, swept from a deep side parting over the head.
+        SideSwept = "side_swept",
+        /// Standing off the head all around, in tight coils.
+        Afro = "afro",
+        /// To the jaw, in falling coils the width of a pencil.
+        Coils = "coils",
+        /// Combed back, tied, and wound about the tie.
+        Bun = "bun",
+        /// Combed back, tied, and plaited of three tresses.
+        Braid = "braid",
+        /// A full beard of two centimetres with a moustache; nothing on the scalp.
+        Beard = "beard",
+        /// Eyebrows; nothing on the scalp.
+        Brows = "brows",
     }
     default Long
+}
+
+impl Style {
+    /// True if hair falls to both sides of a parting.
+    pub(crate) fn is_parted(self) -> bool {
+        match self {
+            Self::Bob | Self::Long | Self::Wavy | Self::Curly | Self::SideSwept | Self::Coils => true,
+            Self::Pixie | Self::Buzz | Self::Afro | Self::Ponytail | Self::Bun | Self::Braid => false,
+            Self::Beard | Self::Brows => false,
+        }
+    }
+
+    /// True if hair grows on the face and not on the scalp.
+    pub fn is_of_face(self) -> bool {
+        matches!(self, Self::Beard | Self::Brows)
+    }
+
+    /// True if all hair runs through a tie behind the head.
+    pub(crate) fn is_tied(self) -> bool {
+        matches!(self, Self::Ponytail | Self::Bun | Self::Braid)
+    }
 }

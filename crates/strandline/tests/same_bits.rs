@@ -10,6 +10,8 @@ use strandline::{Backend, Devices, Event, Player, Scene, Style, scene::MotionNam
 /// A scene, small: a few frames of few strands on a head that shakes.
 fn small(mut scene: Scene) -> Scene {
     scene.style.strand_count = 96;
+    scene.groom.bound = Some(0);
+    scene.look.follow_strands = 16;
     scene.motion.name = MotionName::Shake;
     (scene.film.frames, scene.film.settle) = (3, 0.0);
     (scene.picture.width, scene.picture.height) = (96, 128);

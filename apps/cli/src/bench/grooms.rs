@@ -183,7 +183,7 @@ fn first(groom: &Path, body: Option<&Path>, folder: &Path) -> anyhow::Result<Fir
 fn place(pictures: Backend, [strands, guides]: [u32; 2], frames: u32) -> anyhow::Result<Bound> {
     let mut scene = Scene::demo();
     (scene.style.strand_count, scene.groom.bound, scene.groom.points_per_strand) =
-        (guides as usize, strands, 16);
+        (guides as usize, Some(strands), 16);
     (scene.film.frames, scene.film.settle) = (frames + 1, 0.0);
     (scene.look.follow_strands, scene.picture.width, scene.picture.height) = (1, 64, 64);
     scene.look.dress(strandline::look::Preset::Thesis);

@@ -26,15 +26,15 @@ impl PartialOrd for Crowded {
 }
 
 /// Indices, in rising order, of the `count` places \[m\] that are left when the most crowded one is
-/// taken away again and again \[Yuksel2015\].
-pub(super) fn kept(places: &[Vec3], count: usize) -> Vec<usize> {
+/// taken away again and again \[Yuksel2015\]. The first `fixed` stay in any case.
+pub(super) fn kept(places: &[Vec3], fixed: usize, count: usize) -> Vec<usize> {
     // Twice the largest radius of discs that could cover the area; the area follows from the grid.
     let reach = 2.0 * (area(places) / (2.0 * 3f32.sqrt() * count.max(1) as f32)).sqrt();
     let neighbours = neighbours(places, reach);
     let mut weights: Vec<f32> =
         neighbours.iter().map(|near| near.iter().map(|&(_, weight)| weight).sum()).collect();
     let mut queue: BinaryHeap<Crowded> =
-        weights.iter().enumerate().map(|(index, &weight)| Crowded { weight, index }).collect();
+        weights.iter().enumerate().skip(fixed).map(|(index, &weight)| Crowded { weight, index }).collect();
     let mut alive = vec![true; places.len()];
     let mut left = places.len();
     while left > count {

@@ -7,11 +7,20 @@ use strandline_body::Root;
 use super::{Style, StyleSettings};
 
 /// Centre of the whorl \[m\].
-const WHORL: Vec3 = Vec3::new(0.012, 0.092, -0.062);
+pub const WHORL: Vec3 = Vec3::new(0.012, 0.092, -0.062);
 /// Tie of a ponytail \[m\]; hair leaves it there.
 pub const TIE: Vec3 = Vec3::new(0.0, 0.038, -0.117);
 /// Radius \[m\] of the tied hair.
 pub const TIE_RADIUS: f32 = 0.011;
+/// Middle \[m\] and axis of a bun.
+const BUN: (Vec3, Vec3) = (Vec3::new(0.0, 0.040, -0.136), Vec3::new(0.0, 0.196_116_14, -0.980_580_7));
+/// Part of a direction by which hair in a bun comes back to its place, for each metre off it.
+const PULL: f32 = 90.0;
+/// Length \[m\] of a plait in which each tress comes back to its place, and how far ahead hair is led \[m\].
+const PLAIT: f32 = 0.075;
+const AHEAD: f32 = 0.006;
+/// Middle of the head \[m\].
+const MIDDLE: Vec3 = Vec3::new(0.0, 0.010, -0.010);
 /// The room in front of the face that falling hair keeps free: centre and half axes \[m\].
 const FACE: (Vec3, Vec3) = (Vec3::new(0.0, -0.085, 0.080), Vec3::new(0.062, 0.145, 0.075));
 /// Strands rooted in front of this plane \[m\] fall before the shoulder.
@@ -69,9 +78,17 @@ impl Combed {
     pub fn direction(&self, settings: &StyleSettings, place: Place) -> Vec3 {
         match settings.style {
             Style::Ponytail if self.tied => self.tail(place.passed),
-            Style::Ponytail => self.gathered(place),
+            Style::Bun if self.tied => self.wound(place),
+            Style::Braid if self.tied => self.plaited(settings, place),
+            Style::Ponytail | Style::Bun | Style::Braid => self.gathered(place),
             Style::Pixie => self.off_whorl(settings, place),
-            _ => self.falling(settings, place),
+            Style::Buzz => 1.2 * self.root.normal + 0.6 * self.off_whorl(settings, place),
+            Style::Afro => self.root.normal + 1.5 * (place.point - MIDDLE).normalize_or(Vec3::Y),
+            Style::Bob | Style::Long | Style::Wavy | Style::Curly | Style::SideSwept | Style::Coils => {
+                self.falling(settings, place)
+            }
+            // Combed in their own way.
+            Style::Beard | Style::Brows => Vec3::NEG_Y,
         }
     }
 
@@ -90,6 +107,32 @@ impl Combed {
             0.16 * smooth(0.0, 0.03, passed) * smooth(0.16, 0.07, passed) - 0.05 * smooth(0.16, 0.30, passed);
         let spread = open * Vec3::new(self.place.x, 0.0, self.place.y);
         Vec3::new(0.0, 0.35, -1.0).lerp(Vec3::new(0.0, -1.0, 0.03), fall) + spread
+    }
+
+    /// About the tie in a ring: each strand at its own place across it.
+    fn wound(&self, place: Place) -> Vec3 {
+        let aside = place.point - BUN.0;
+        let depth = aside.dot(BUN.1);
+        let radial = aside - BUN.1 * depth;
+        let around = radial.normalize_or(Vec3::Y);
+        let [radius, wanted] = [0.019 + 0.010 * self.place.x, 0.012 * self.place.y];
+        BUN.1.cross(around) + PULL * ((radius - radial.length()) * around + (wanted - depth) * BUN.1)
+    }
+
+    /// Down from the tie as one of three tresses that cross each other in turn.
+    fn plaited(&self, settings: &StyleSettings, place: Place) -> Vec3 {
+        let tress =
+            if self.root.position.x.abs() < 0.022 { 1.0 } else { 1.0 + self.root.position.x.signum() };
+        let below = (TIE.y - place.point.y + AHEAD).max(0.0);
+        let angle = std::f32::consts::TAU * (below / PLAIT + tress / 3.0);
+        // The tresses begin in the tie, and end close to each other.
+        let open =
+            smooth(0.0, 0.03, below) * smooth(settings.cut_height, settings.cut_height + 0.05, place.point.y);
+        let (breadth, depth) = (0.003 + 0.011 * open, 0.002 + 0.006 * open);
+        let middle = TIE + Vec3::new(0.0, -below, -0.030 * smooth(0.0, 0.04, below));
+        let across = Vec3::new(breadth * math::sin(angle), 0.0, depth * math::sin(2.0 * angle));
+        let own = (0.003 + 0.004 * open) * Vec3::new(self.place.x, 0.0, self.place.y);
+        middle + across + own - place.point
     }
 
     /// Outward from the whorl, turned by the swirl; over the forehead to the side.

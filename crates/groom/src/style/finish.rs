@@ -12,18 +12,18 @@ use super::comb::smooth;
 use super::strand::{CLEARANCE, Strand, outside};
 use crate::arcs::equal_arcs;
 
-/// Shapes the strands and returns the clump of each.
+/// The shaped strands, and the clump of each.
 pub fn finish(
     settings: &StyleSettings,
     mannequin: &Mannequin,
-    strands: Vec<Strand>,
+    strands: &[Strand],
 ) -> (Vec<Strand>, Vec<u32>) {
     let count = (mannequin.scalp().area() / settings.clump_width.powi(2)).ceil() as usize;
-    let clumps = clumps(count.clamp(1, strands.len()), &strands);
+    let clumps = clumps(count.clamp(1, strands.len()), strands);
     let shaped = strands.par_iter().enumerate().map(|(index, strand)| {
         let center = &strands[clumps[index] as usize];
         let points = shape(settings, mannequin, strand, center, index, clumps[index]);
-        Strand { root: strand.root, points }
+        Strand { root: strand.root, side: strand.side, points }
     });
     let strands = shaped.collect();
     (strands, clumps)
@@ -95,7 +95,7 @@ fn shape(
 }
 
 /// The choices that bend a strand: those of its clump and its own.
-struct Bends {
+pub(super) struct Bends {
     wave_phase: f32,
     curl_phase: f32,
     /// Turning sense and radius of the curl, 1 on average in size.
@@ -108,23 +108,46 @@ struct Bends {
 impl Bends {
     fn new(settings: &StyleSettings, strand: &Strand, index: usize, clump: u32) -> Self {
         let mut own = Random::new(settings.seed, 2_000_000_000 + index as u64);
+        let (wave_phase, curl_phase, curl, rate) = Self::shared(settings, strand, clump);
+        Self {
+            wave_phase: wave_phase + 0.5 * (own.unit() - 0.5),
+            curl_phase: curl_phase + 0.9 * (own.unit() - 0.5),
+            curl: curl * (0.9 + 0.2 * own.unit()),
+            rate: rate + 0.04 * (own.unit() - 0.5),
+            swing: [(); 4].map(|()| TAU * own.unit()),
+        }
+    }
+
+    /// Phases of waves and curls, size and rate that all strands of a clump have.
+    fn shared(settings: &StyleSettings, strand: &Strand, clump: u32) -> (f32, f32, f32, f32) {
         let mut shared = Random::new(settings.seed, 3_000_000_000 + u64::from(clump));
         let sense = if shared.unit() < 0.5 { -1.0 } else { 1.0 };
         // Waves of neighbouring clumps run side by side; curls do not.
         let place = strand.root.position;
         let together =
             2.5 * math::sin(31.0 * place.z + 1.3) + 2.0 * math::sin(23.0 * place.y + 17.0 * place.x);
-        Self {
-            wave_phase: together + 1.1 * (shared.unit() - 0.5) + 0.5 * (own.unit() - 0.5),
-            curl_phase: TAU * shared.unit() + 0.9 * (own.unit() - 0.5),
-            curl: sense * (0.65 + 0.7 * shared.unit()) * (0.9 + 0.2 * own.unit()),
-            rate: 0.8 + 0.4 * shared.unit() + 0.04 * (own.unit() - 0.5),
-            swing: [(); 4].map(|()| TAU * own.unit()),
-        }
+        let wave_phase = together + 1.1 * (shared.unit() - 0.5);
+        let curl_phase = TAU * shared.unit();
+        (wave_phase, curl_phase, sense * (0.65 + 0.7 * shared.unit()), 0.8 + 0.4 * shared.unit())
+    }
+
+    /// Choices of a strand of a small lock in a clump: the lock has some of its own, the strand few.
+    pub fn in_lock(settings: &StyleSettings, strand: &Strand, clump: u32, lock: usize, index: usize) -> Self {
+        let mut bends = Self::new(settings, strand, index, clump);
+        let mut own = Random::new(settings.seed, 9_000_000_000 + index as u64);
+        let mut shared = Random::new(settings.seed, 10_000_000_000 + lock as u64);
+        let (turn, size) = (shared.signed(), shared.signed());
+        // Choices of the clump alone, but for the swing.
+        let middle = Self::shared(settings, strand, clump);
+        bends.wave_phase = middle.0 + 0.3 * turn + 0.12 * own.signed();
+        bends.curl_phase = middle.1 + 0.35 * turn + 0.15 * own.signed();
+        bends.curl = middle.2 * (1.0 + 0.12 * size + 0.06 * own.signed());
+        bends.rate = middle.3 * (1.0 + 0.006 * size);
+        bends
     }
 
     /// Distance \[m\] by which a strand is bent aside at a share of its length \[m\].
-    fn offset(&self, settings: &StyleSettings, [side, up]: [Vec3; 2], share: f32, length: f32) -> Vec3 {
+    pub fn offset(&self, settings: &StyleSettings, [side, up]: [Vec3; 2], share: f32, length: f32) -> Vec3 {
         let along = share * length;
         let wave = settings.wave_amplitude * smooth(0.02, 0.16, along);
         let wave_rate = 1.0 + 0.5 * (self.rate - 1.0);
@@ -151,7 +174,7 @@ fn clumped(settings: &StyleSettings, strand: &Strand, center: &Strand, point: us
 }
 
 /// Two directions across the strand at every point, turned as little as possible from the root on.
-fn frames(points: &[Vec3], normal: Vec3) -> Vec<[Vec3; 2]> {
+pub(super) fn frames(points: &[Vec3], normal: Vec3) -> Vec<[Vec3; 2]> {
     let tangent = |index: usize| {
         let (before, after) = (index.saturating_sub(1), (index + 1).min(points.len() - 1));
         (points[after] - points[before]).normalize_or(Vec3::NEG_Y)

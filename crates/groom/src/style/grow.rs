@@ -9,7 +9,10 @@ use strandline_base::par::prelude::*;
 use strandline_body::{Mannequin, Random, Root, SignedDistance};
 
 use super::comb::{Combed, Place, TIE_RADIUS, smooth};
-use super::strand::{CLEARANCE, Strand, outside};
+use super::face;
+use super::hair;
+use super::locks::{self, Shaped};
+use super::strand::{CLEARANCE, Strand, WIDTH, beside_parting, outside};
 use super::{Style, StyleSettings, finish};
 use crate::arcs::equal_arcs;
 use crate::{Groom, GroomError, Widths};
@@ -18,13 +21,10 @@ use crate::{Groom, GroomError, Widths};
 const STEP: f32 = 0.004;
 /// Share of the old direction kept in each step: hair is stiff.
 const STIFFNESS: f32 = 0.72;
-/// Diameter of a hair \[m\].
-const WIDTH: f32 = 8e-5;
+/// The same of hair that is wound or plaited.
+const WOUND: f32 = 0.35;
 /// Way \[m\] over which hair rises from its root to the full thickness of the hair.
 const RISE: f32 = 0.10;
-
-/// Distance \[m\] from the parting within which roots are drawn toward it.
-const PARTING_REACH: f32 = 0.014;
 
 /// A dome over the ear: centre on the side of positive x and half axes \[m\].
 const EAR_DOME: (Vec3, Vec3) = (Vec3::new(0.062, -0.026, -0.012), Vec3::new(0.033, 0.056, 0.050));
@@ -32,53 +32,89 @@ const EAR_DOME: (Vec3, Vec3) = (Vec3::new(0.062, -0.026, -0.012), Vec3::new(0.03
 const DOME_REACH: f32 = 0.016;
 
 impl StyleSettings {
-    /// Grows the style on the built-in mannequin.
+    /// Grows the style on the built-in mannequin: `strand_count` strands.
     ///
     /// # Errors
     /// A setting outside its range; more memory than may be taken.
     pub fn grow(&self) -> Result<Groom, GroomError> {
+        self.grow_hair(self.strand_count)
+    }
+
+    /// Grows the style with `drawn` strands in all. The first `strand_count` are those of [`StyleSettings::grow`] and
+    /// marked as guides; the others lie between them, each with a curve of its own.
+    ///
+    /// # Errors
+    /// As [`StyleSettings::grow`].
+    pub fn grow_hair(&self, drawn: usize) -> Result<Groom, GroomError> {
         self.validate()?;
-        memory::check(&[self.memory()])?;
+        memory::check(&[self.memory(drawn)])?;
         let mannequin = Mannequin::new();
+        let more = drawn.saturating_sub(self.strand_count);
+        if self.style.is_of_face() {
+            let grown = face::strands(self, &mannequin, 0, self.strand_count.max(drawn));
+            let grown = grown.into_iter().map(|strand| Grown::new(strand, 0));
+            return Ok(groom(grown.collect(), self.strand_count));
+        }
         let roots = mannequin.scalp().roots(self.strand_count, self.seed);
-        let strands: Vec<Strand> = roots
+        let combed: Vec<Strand> = roots
             .into_par_iter()
             .enumerate()
             .map(|(index, root)| march(self, &mannequin, index, beside_parting(self, &mannequin, root)))
             .collect();
-        let (strands, clumps) = finish::finish(self, &mannequin, strands);
-        let mut groom = Groom::empty(WIDTH);
-        groom.widths = Widths::Constant(WIDTH);
-        for strand in &strands {
-            groom.push(strand.points.iter().copied());
+        let (guides, clumps) = finish::finish(self, &mannequin, &combed);
+        let mut grown: Vec<Grown> =
+            guides.into_iter().zip(&clumps).map(|(strand, clump)| Grown::new(strand, *clump)).collect();
+        if more > 0 {
+            let hair = hair::between(self, &mannequin, &combed, more);
+            let shaped = locks::shape(self, &mannequin, &combed, &clumps, &hair);
+            grown.extend(hair.into_iter().zip(shaped).map(|(own, Shaped { points, width })| Grown {
+                width,
+                ..Grown::new(Strand { points, ..own.strand }, clumps[own.guide])
+            }));
         }
-        groom.root_uvs = Some(strands.iter().map(|strand| strand.root.uv).collect());
-        groom.root_normals = Some(strands.iter().map(|strand| strand.root.normal).collect());
-        groom.groups = Some(clumps);
-        Ok(groom)
+        Ok(groom(grown, self.strand_count))
     }
+}
+
+/// A grown strand with its diameter \[m\] and its lock.
+struct Grown {
+    strand: Strand,
+    width: f32,
+    clump: u32,
+}
+
+impl Grown {
+    fn new(strand: Strand, clump: u32) -> Self {
+        Self { strand, width: WIDTH, clump }
+    }
+}
+
+/// The groom of strands; the first are guides, and marked where there are others.
+fn groom(grown: Vec<Grown>, guide_count: usize) -> Groom {
+    let mut groom = Groom::empty(WIDTH);
+    for one in &grown {
+        groom.push(one.strand.points.iter().copied());
+    }
+    groom.widths = Widths::Constant(WIDTH);
+    if grown.len() > guide_count {
+        groom.widths = Widths::PerStrand(grown.iter().map(|one| one.width).collect());
+        groom.guide_flags = Some((0..grown.len()).map(|strand| strand < guide_count).collect());
+    }
+    groom.root_uvs = Some(grown.iter().map(|one| one.strand.root.uv).collect());
+    groom.root_normals = Some(grown.iter().map(|one| one.strand.root.normal).collect());
+    groom.groups = Some(grown.iter().map(|one| one.clump).collect());
+    groom
 }
 
 impl StyleSettings {
-    /// Largest memory of growing: each strand as it is marched, shaped and finally a part of the groom.
-    pub fn memory(&self) -> Need {
+    /// Largest memory of growing so many strands: each as it is marched, shaped and finally a part of the groom.
+    pub fn memory(&self, drawn: usize) -> Need {
         let marched = 2 * (self.length / STEP).ceil() as u64;
         let each = 12 * (marched + 2 * self.points() as u64) + 3 * size_of::<Strand>() as u64;
-        Need::new(format!("style.strand_count = {}", self.strand_count), self.strand_count as u64, each)
+        let count = drawn.max(self.strand_count);
+        let key = if drawn > self.strand_count { "groom.bound" } else { "style.strand_count" };
+        Need::new(format!("{key} = {count}"), count as u64, each)
     }
-}
-
-/// Draws roots near the parting toward it, so that it is a line and not a lane.
-fn beside_parting(settings: &StyleSettings, mannequin: &Mannequin, root: Root) -> Root {
-    let across = root.position.x - settings.parting;
-    let share = across.abs() / PARTING_REACH;
-    if matches!(settings.style, Style::Pixie | Style::Ponytail) || share >= 1.0 || root.position.y < 0.0 {
-        return root;
-    }
-    let mut drawn = root.position;
-    drawn.x = settings.parting + across * share.sqrt();
-    let (position, normal) = mannequin.nearest_skin(drawn);
-    Root { position, normal, ..root }
 }
 
 /// One strand, from its root to where it is cut.
@@ -101,7 +137,8 @@ fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, roo
         let (distance, out) = covered(settings, mannequin, point);
         let place = Place { point, distance, out, passed: passed_tie };
         let wanted = combed.direction(settings, place).normalize_or(Vec3::NEG_Y);
-        direction = (direction * STIFFNESS + wanted * (1.0 - STIFFNESS)).normalize_or(wanted);
+        let kept = if combed.tied && settings.style != Style::Ponytail { WOUND } else { STIFFNESS };
+        direction = (direction * kept + wanted * (1.0 - kept)).normalize_or(wanted);
         let rise = smooth(0.0, RISE, step as f32 * STEP);
         let clearance = if combed.tied { CLEARANCE } else { CLEARANCE + thickness * rise };
         // A direction into the skin is turned along it before the hair comes too near.
@@ -114,7 +151,7 @@ fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, roo
         point = uncovered(settings, mannequin, point + direction * STEP, least);
         direction = (point - before).normalize_or(direction);
         points.push(point);
-        if settings.style == Style::Ponytail {
+        if settings.style.is_tied() {
             let left = combed.tie().distance(point);
             combed.tied |= left < 1.2 * TIE_RADIUS;
             passed_tie += if combed.tied { STEP } else { 0.0 };
@@ -125,7 +162,7 @@ fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, roo
     }
     smooth_out(&mut points, mannequin);
     let points = equal_arcs(&points, settings.points()).collect();
-    Strand { root, points }
+    Strand { root, side: combed.side, points }
 }
 
 /// Direction in which a strand leaves the skin.
@@ -133,14 +170,13 @@ fn leaving(settings: &StyleSettings, combed: &Combed) -> Vec3 {
     let normal = combed.root.normal;
     let place = Place { point: combed.root.position, distance: 0.0, out: normal, passed: 0.0 };
     let flow = combed.direction(settings, place).normalize_or(normal);
-    let lift = if settings.style == Style::Ponytail { 0.25 } else { 0.6 };
+    let lift = if settings.style.is_tied() { 0.25 } else { 0.6 };
     // Beside the parting hair rises before it falls to its side, which hides the skin.
-    let beside = match settings.style {
-        Style::Pixie | Style::Ponytail => 0.0,
-        _ => {
-            smooth(0.012, 0.0, (combed.root.position.x - settings.parting).abs())
-                * smooth(-0.02, 0.03, combed.root.position.y)
-        }
+    let beside = if settings.style.is_parted() {
+        smooth(0.012, 0.0, (combed.root.position.x - settings.parting).abs())
+            * smooth(-0.02, 0.03, combed.root.position.y)
+    } else {
+        0.0
     };
     (normal * (lift + 0.45 * beside) + flow * (1.0 - 0.6 * beside)).normalize_or(normal)
 }
@@ -156,7 +192,7 @@ fn style_length(settings: &StyleSettings, root: &Root) -> f32 {
 /// Distance \[m\] and direction away from the skin, ears smoothed over where hair falls across them.
 fn covered(settings: &StyleSettings, mannequin: &Mannequin, point: Vec3) -> (f32, Vec3) {
     let (distance, out) = mannequin.distance_and_gradient(point);
-    if matches!(settings.style, Style::Pixie | Style::Ponytail) {
+    if !settings.style.is_parted() {
         return (distance, out);
     }
     let side = Vec3::new(point.x.signum(), 1.0, 1.0);

@@ -43,6 +43,17 @@ settings! {
         curl_length: f32 = 0.05, in [0.005, 2.0] "m", slider [0.02, 0.3], more "looser curls";
         /// Amplitude of each strand's own disorder at the tip.
         noise: f32 = 0.003, in [0.0, 0.1] "m", slider [0.0, 0.02], more "more disorder";
+        /// Share of the way to the middle of its small lock, eight neighbours, that a strand between the guides is
+        /// drawn at the tip.
+        lock_share: f32 = 0.4, in [0.0, 1.0], more "finer, clearer locks";
+        /// Mean amplitude of the waves that each strand between the guides has of its own.
+        frizz: f32 = 0.0026, in [0.0, 0.05] "m", slider [0.0, 0.01], more "frizzier hair";
+        /// Share of the strands between the guides that leave their lock.
+        strays: f32 = 0.04, in [0.0, 1.0], slider [0.0, 0.2], more "more strays";
+        /// Share of the length by which the ends of locks and of strands between the guides differ.
+        thinning: f32 = 0.07, in [0.0, 0.9], slider [0.0, 0.3], more "thinner, softer ends";
+        /// Breadth of the hairline, along which hair grows denser, longer and thicker.
+        hairline: f32 = 0.009, in [0.0, 0.05] "m", slider [0.0, 0.02], more "a softer hairline";
     }
     prepare StyleSettings::prepare;
 }
@@ -58,6 +69,14 @@ impl StyleSettings {
             Style::Curly => plain.curly(),
             Style::Pixie => plain.pixie(),
             Style::Ponytail => plain.ponytail(),
+            Style::Buzz => plain.buzz(),
+            Style::SideSwept => plain.side_swept(),
+            Style::Afro => plain.afro(),
+            Style::Coils => plain.coils(),
+            Style::Bun => plain.bun(),
+            Style::Braid => plain.braid(),
+            Style::Beard => plain.beard(),
+            Style::Brows => plain.brows(),
         }
     }
 
@@ -72,6 +91,8 @@ impl StyleSettings {
             volume: 0.016,
             clump_share: 0.15,
             noise: 0.0015,
+            frizz: 0.0017,
+            thinning: 0.03,
             ..self
         }
     }
@@ -83,6 +104,8 @@ impl StyleSettings {
             parting: 0.02,
             clump_width: 0.022,
             clump_share: 0.55,
+            lock_share: 0.6,
+            frizz: 0.0017,
             wave_amplitude: 0.011,
             wave_length: 0.095,
             ..self
@@ -102,6 +125,10 @@ impl StyleSettings {
             curl_radius: 0.0085,
             curl_length: 0.06,
             noise: 0.005,
+            lock_share: 0.85,
+            frizz: 0.0011,
+            strays: 0.06,
+            thinning: 0.12,
             ..self
         }
     }
@@ -117,6 +144,8 @@ impl StyleSettings {
             clump_width: 0.0155,
             clump_share: 0.35,
             noise: 0.004,
+            frizz: 0.0012,
+            thinning: 0.15,
             ..self
         }
     }
@@ -132,8 +161,134 @@ impl StyleSettings {
             wave_amplitude: 0.003,
             wave_length: 0.12,
             noise: 0.002,
+            frizz: 0.002,
+            strays: 0.03,
+            thinning: 0.15,
             ..self
         }
+    }
+
+    fn buzz(self) -> Self {
+        Self {
+            length: 0.012,
+            length_variation: 0.2,
+            cut_height: -0.2,
+            swirl: 0.35,
+            volume: 0.008,
+            clump_share: 0.1,
+            noise: 0.001,
+            lock_share: 0.1,
+            frizz: 0.0003,
+            strays: 0.0,
+            ..self
+        }
+    }
+
+    fn side_swept(self) -> Self {
+        Self {
+            length: 0.26,
+            length_variation: 0.15,
+            cut_height: -0.13,
+            layering: 0.06,
+            turn_under: 0.3,
+            parting: 0.034,
+            volume: 0.021,
+            clump_share: 0.45,
+            wave_amplitude: 0.006,
+            wave_length: 0.12,
+            lock_share: 0.5,
+            frizz: 0.0017,
+            thinning: 0.1,
+            ..self
+        }
+    }
+
+    fn afro(self) -> Self {
+        Self {
+            length: 0.075,
+            length_variation: 0.2,
+            cut_height: -0.2,
+            layering: 0.0,
+            volume: 0.02,
+            clump_width: 0.009,
+            clump_share: 0.3,
+            curl_radius: 0.0032,
+            curl_length: 0.015,
+            noise: 0.004,
+            lock_share: 0.35,
+            frizz: 0.002,
+            strays: 0.06,
+            thinning: 0.12,
+            ..self
+        }
+    }
+
+    fn coils(self) -> Self {
+        Self {
+            length: 0.24,
+            length_variation: 0.3,
+            cut_height: -0.15,
+            layering: 0.10,
+            parting: -0.015,
+            volume: 0.034,
+            clump_width: 0.011,
+            clump_share: 0.75,
+            curl_radius: 0.0048,
+            curl_length: 0.030,
+            noise: 0.004,
+            lock_share: 0.85,
+            frizz: 0.0009,
+            strays: 0.06,
+            thinning: 0.12,
+            ..self
+        }
+    }
+
+    fn bun(self) -> Self {
+        Self {
+            length: 0.42,
+            length_variation: 0.25,
+            cut_height: -0.25,
+            volume: 0.009,
+            clump_share: 0.1,
+            noise: 0.001,
+            lock_share: 0.3,
+            frizz: 0.001,
+            strays: 0.02,
+            ..self
+        }
+    }
+
+    fn braid(self) -> Self {
+        Self {
+            length: 0.75,
+            length_variation: 0.05,
+            cut_height: -0.30,
+            volume: 0.009,
+            clump_share: 0.1,
+            noise: 0.001,
+            lock_share: 0.3,
+            frizz: 0.001,
+            strays: 0.025,
+            thinning: 0.1,
+            ..self
+        }
+    }
+
+    fn beard(self) -> Self {
+        Self {
+            length: 0.022,
+            length_variation: 0.5,
+            volume: 0.005,
+            curl_radius: 0.0008,
+            curl_length: 0.016,
+            noise: 0.004,
+            ..self
+        }
+    }
+
+    fn brows(self) -> Self {
+        Self { length: 0.010, length_variation: 0.35, volume: 0.001, noise: 0.001, ..self }
     }
 
     /// A missing key has the value of its style.
@@ -145,7 +300,9 @@ impl StyleSettings {
 
     /// Points of a grown strand: more where it bends more.
     pub(super) fn points(&self) -> usize {
-        if self.curl_radius > 0.0 {
+        if self.style.is_of_face() || self.style == Style::Buzz {
+            10
+        } else if self.curl_radius > 0.0 || matches!(self.style, Style::Bun | Style::Braid) {
             64
         } else if self.wave_amplitude > 0.0 {
             32

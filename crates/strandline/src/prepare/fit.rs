@@ -346,7 +346,7 @@ mod tests {
         assert_eq!(scene.look.follow_strands, 16, "40,000 of 2,500");
         assert!(note.contains("look.clump.tip_radius") && !note.contains("simulation"), "{note}");
         let note = choose(&mut own, &groom(0.0), None).unwrap();
-        assert_eq!((own.look.follow_strands, own.look.clump.tip_radius), (16, 0.002));
+        assert_eq!((own.look.follow_strands, own.look.clump.tip_radius), (2, 0.002));
         assert!(!note.contains("follow_strands") && !note.contains("tip_radius"), "{note}");
     }
 }

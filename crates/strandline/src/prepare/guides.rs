@@ -35,7 +35,7 @@ pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
         None => all.clone(),
         Some(chosen) => resampled(scene, &groom.select(chosen), loading.shape.as_ref())?,
     };
-    let spreads = looks::spreads(&scene.look, groom)?;
+    let spreads = narrowed(looks::spreads(&scene.look, groom)?, scene, simulated, groom.strand_count());
     if chosen.is_none() {
         guides.set_spreads(spreads.clone())?;
     }
@@ -87,6 +87,21 @@ fn tie(scene: &Scene, guides: &mut Guides) -> Vec<String> {
     ties.iter().zip(counts).enumerate().map(note).collect()
 }
 
+/// Room of follow strands over that between the strands of a style: they fill what lies between, and are no copies beside
+/// them.
+const ROOM: f32 = 1.8;
+
+/// Factors of the spread of drawn strands: between the many strands of a style less room is left than between its
+/// guides.
+fn narrowed(spreads: Option<Vec<f32>>, scene: &Scene, simulated: usize, grown: usize) -> Option<Vec<f32>> {
+    if scene.groom.file.is_some() || simulated >= grown {
+        return spreads;
+    }
+    let share = ROOM * (simulated as f32 / grown as f32).sqrt();
+    let own = |spreads: Vec<f32>| spreads.into_iter().map(|spread| share * spread).collect();
+    Some(spreads.map_or_else(|| vec![share; grown], own))
+}
+
 /// Strands as they are simulated and drawn; roots without a normal take that of the body.
 fn resampled(scene: &Scene, groom: &Groom, body: Option<&Shape>) -> Result<Guides, Error> {
     let mut guides = Guides::resample(groom, scene.groom.points_per_strand as usize)?;
@@ -107,13 +122,17 @@ fn choose(scene: &Scene, groom: &Groom, notes: &mut Vec<String>) -> Option<Vec<u
     let (guides, how) = match scene.groom.guides {
         Some(wanted) => (groom.representatives(wanted as usize), "chosen"),
         None if every > 1 => ((0..count).step_by(every).collect(), "every n-th"),
-        None if scene.groom.file.is_none() => (groom.representatives(scene.style.strand_count), "chosen"),
+        None if scene.groom.file.is_none() => (marked, "chosen"),
         None if !marked.is_empty() => (marked, "marked in the file"),
         None if count > MANY => (groom.representatives(GUIDES), "chosen"),
         None => return None,
     };
     if guides.len() >= count || guides.is_empty() {
         return None;
+    }
+    if scene.groom.file.is_none() && scene.groom.bound.is_none() {
+        // As every style has it.
+        return Some(guides);
     }
     let bound = count - guides.len();
     let simulated = counted(guides.len(), "strand is", "strands are");

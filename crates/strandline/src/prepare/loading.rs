@@ -72,7 +72,7 @@ impl<'a> Loading<'a> {
         scene.check()?;
         sources.check(scene)?;
         if scene.groom.file.is_none() {
-            let drawn = scene.style.strand_count.max(scene.groom.bound as usize);
+            let drawn = scene.grown_strands();
             memory::check(scene, scene.style.strand_count, drawn)?;
         }
         Ok(Self {

@@ -38,9 +38,7 @@ fn grown(loading: &mut Loading) -> Result<Groom, Error> {
     Ok(groom)
 }
 
-/// A grown style: its guides, or as many strands as are bound to guides among them.
+/// A grown style: its guides, and the strands that are bound to them.
 fn style(scene: &Scene) -> Result<Groom, Error> {
-    let mut style = scene.style.clone();
-    style.strand_count = style.strand_count.max(scene.groom.bound as usize);
-    Ok(style.grow()?)
+    Ok(scene.style.grow_hair(scene.grown_strands())?)
 }

@@ -3,6 +3,7 @@ use std::str::FromStr;
 use glam::Vec3;
 use strandline_base::SettingError;
 
+use super::groom::{filling, grown};
 use super::{FilmSection, GroomSection, MotionName, Scene};
 use crate::{
     Error,
@@ -12,14 +13,20 @@ use crate::{
 };
 
 impl Scene {
+    /// Strands that the scene's style grows in all.
+    pub(crate) fn grown_strands(&self) -> usize {
+        grown(self.style.strand_count, self.groom.bound)
+    }
+
     /// The demo: the default style shakes its head for 4 s. An empty scene file is the same scene.
     pub fn demo() -> Self {
         Self::default()
     }
 
     /// Replaces the strands by a built-in style, with as many points on a guide as its curls need
-    /// (`groom.points_per_strand`) and a drawn segment about every centimetre
-    /// (`level_of_detail.segments_per_span`). A file that names a style and neither of these gets the same.
+    /// (`groom.points_per_strand`), a drawn segment about every centimetre
+    /// (`level_of_detail.segments_per_span`) and 16 drawn strands for each guide (`look.follow_strands`). A file that
+    /// names a style and none of these gets the same.
     pub fn set_style(&mut self, style: Style) {
         let (seed, strand_count) = (self.style.seed, self.style.strand_count);
         self.groom.file = None;
@@ -27,12 +34,24 @@ impl Scene {
         self.begin_at_rest();
         self.style = StyleSettings { seed, strand_count, ..StyleSettings::new(style) };
         let (points, segments) = match style {
-            Style::Curly => (56, 1),
-            Style::Wavy => (28, 2),
+            Style::Curly | Style::Coils | Style::Braid => (56, 1),
+            Style::Afro | Style::Bun => (48, 1),
+            Style::Wavy | Style::SideSwept => (28, 2),
+            Style::Buzz | Style::Beard | Style::Brows => (8, 2),
             Style::Pixie | Style::Ponytail | Style::Bob | Style::Long => (16, 3),
         };
         self.groom.points_per_strand = points;
         self.level_of_detail.segments_per_span = segments;
+        // Hairs of a face are fewer than those of a head; other numbers are the user's.
+        let hairs = |style| match style {
+            Style::Beard => 25_000,
+            Style::Brows => 1_500,
+            _ => 100_000,
+        };
+        if Style::ALL.into_iter().any(|style| hairs(style) == self.look.hair_count) {
+            self.look.hair_count = hairs(style);
+        }
+        self.look.follow_strands = filling(strand_count, self.groom.bound);
     }
 
     /// Sets tone map and background that go with the look of the thesis.
@@ -47,7 +66,7 @@ impl Scene {
     pub fn thesis() -> Self {
         // Six points bend over the skull only when they are not far apart: a bob.
         let mut scene = Self {
-            groom: GroomSection { points_per_strand: 6, ..GroomSection::default() },
+            groom: GroomSection { points_per_strand: 6, bound: Some(0), ..GroomSection::default() },
             style: StyleSettings { strand_count: 1750, ..StyleSettings::new(Style::Bob) },
             simulation: Settings::thesis(),
             film: FilmSection { settle: FilmSection::SETTLE, ..FilmSection::default() },

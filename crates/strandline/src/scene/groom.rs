@@ -83,8 +83,8 @@ settings! {
         /// Simulate every n-th strand; the others are bound to them. `guides` comes before it.
         guide_every: u32 = 1, in [1, 1_000_000], more "fewer simulated strands";
         /// Strands that a style grows in all, of which `style.strand_count` are simulated and the others bound
-        /// to them; not more than those, all are simulated.
-        bound: u32 = 0, in [0, 8_000_000], slider [0, 100_000], more "hair of its own in place of tufts";
+        /// to them; not more than those, all are simulated. Without it eight for each that is simulated.
+        bound: Option<u32> = None, in [0, 8_000_000], slider [0, 100_000], more "hair of its own in place of tufts";
         /// Points on each guide. Without a groom file the default is that of the style.
         points_per_strand: u32 = 16, in [4, 64], more "finer curls at a higher cost";
         /// Length of every strand over its own.
@@ -104,4 +104,20 @@ settings! {
         /// \[m\]. The film then begins with hair and body as they are there. Without it hair begins at rest.
         pose: Option<PathBuf> = None;
     }
+}
+
+/// Strands that a style grows for each guide.
+const GROWN: usize = 8;
+/// Drawn strands of each guide of a style: its own, and follow strands between them.
+const DRAWN: usize = 16;
+
+/// Strands that a style of some guides grows in all.
+pub(super) fn grown(guides: usize, bound: Option<u32>) -> usize {
+    bound.map_or(GROWN.saturating_mul(guides), |bound| guides.max(bound as usize))
+}
+
+/// Follow strands that fill the hair of a style of some guides.
+pub(super) fn filling(guides: usize, bound: Option<u32>) -> u32 {
+    let wanted = DRAWN.saturating_mul(guides);
+    wanted.div_ceil(grown(guides, bound).max(1)).clamp(1, DRAWN) as u32
 }

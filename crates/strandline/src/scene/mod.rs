@@ -73,8 +73,9 @@ settings! {
         colliders: Vec<ColliderSection> = Vec::new();
         /// Motion of the hair.
         simulation: Settings = Settings::default();
-        /// Colour and shape of the drawn hair.
-        look: Look = Look::default();
+        /// Colour and shape of the drawn hair. Without a groom file the default of `follow_strands` makes 16 drawn
+        /// strands for each guide.
+        look: Look = Look { follow_strands: 2, ..Look::default() };
         /// Colour of the drawn body.
         body_look: BodyLook = BodyLook::default();
         /// Detail by distance and the size of a pixel. Without a groom file the default of
@@ -117,6 +118,10 @@ impl Scene {
         if given.groom.as_ref().is_none_or(|groom| groom.file.is_none()) {
             let style = given.style.as_ref().and_then(|style| style.style);
             self.set_style(style.unwrap_or(self.style.style));
+            let guides = given.style.as_ref().and_then(|style| style.strand_count);
+            let bound = given.groom.as_ref().and_then(|groom| groom.bound);
+            let guides = guides.unwrap_or(self.style.strand_count);
+            self.look.follow_strands = groom::filling(guides, bound);
         } else {
             self.groom.points_per_strand = GroomSection::default().points_per_strand;
             self.level_of_detail.segments_per_span = LevelOfDetail::default().segments_per_span;

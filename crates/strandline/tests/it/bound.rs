@@ -11,7 +11,7 @@ use strandline::{
 /// A style of 900 strands of which 90 are simulated, drawn small.
 fn scene() -> Scene {
     let mut scene = Scene::demo();
-    (scene.style.strand_count, scene.groom.bound) = (90, 900);
+    (scene.style.strand_count, scene.groom.bound) = (90, Some(900));
     scene.body.spacing = 0.01;
     scene.simulation.volume.cells = [12; 3];
     scene.motion.name = MotionName::Shake;
@@ -52,7 +52,7 @@ fn all_strands_of_a_style_are_drawn_alike_on_both_backends() {
     assert_eq!(strands, 900);
     assert!((80..=90).contains(&guides), "{guides}");
     let mut few = scene();
-    few.groom.bound = 0;
+    few.groom.bound = Some(0);
     let (without, strands, _) = last(&few, Backend::Cpu);
     assert_eq!(strands, 90);
     assert!(difference(&on_cpu, &without) > 2.0, "the comparison can fail");

@@ -12,6 +12,7 @@ const FRAMES: u32 = 14;
 fn scene() -> Scene {
     let mut scene = Scene::demo();
     scene.style.strand_count = 60;
+    scene.groom.bound = Some(0);
     scene.body.spacing = 0.01;
     scene.simulation.volume.cells = [12; 3];
     scene.motion.name = MotionName::Shake;

@@ -17,6 +17,7 @@ const STEP: f64 = 1.0 / 60.0;
 fn scene(backend: Backend) -> Scene {
     let mut scene = Scene::demo();
     scene.style.strand_count = STRANDS;
+    scene.groom.bound = Some(0);
     scene.body.spacing = 0.01;
     scene.simulation.volume.cells = [12; 3];
     (scene.devices.simulation, scene.devices.pictures) = (backend, Backend::Cpu);

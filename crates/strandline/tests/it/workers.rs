@@ -5,6 +5,7 @@ use strandline::{Backend, Camera, Event, Picture, Player, Scene, scene::MotionNa
 fn scene() -> Scene {
     let mut scene = Scene::demo();
     scene.style.strand_count = 60;
+    scene.groom.bound = Some(0);
     scene.body.spacing = 0.01;
     scene.simulation.volume.cells = [12; 3];
     scene.motion.name = MotionName::Shake;

@@ -1,0 +1,170 @@
+//! Locks of two sizes, strays, frizz and ends of the hair between guides.
+
+use std::f32::consts::TAU;
+
+use glam::Vec3;
+use strandline_base::math;
+use strandline_base::par::prelude::*;
+use strandline_body::{Mannequin, Random};
+
+use super::StyleSettings;
+use super::comb::smooth;
+use super::finish::{Bends, frames};
+use super::hair::Between;
+use super::strand::{CLEARANCE, Strand, WIDTH, outside};
+use crate::arcs::equal_arcs;
+
+/// Strands of a small lock: neighbours on the skin.
+const SMALL_LOCK: usize = 8;
+/// Distances \[m\] from the middle of a large and of a small lock beyond which nothing is drawn to it.
+const APART: [[f32; 2]; 2] = [[0.05, 0.02], [0.03, 0.012]];
+/// Frizz of a stray over that of others.
+const STRAY: f32 = 3.5;
+/// Distance \[m\] by which strays stand off at their tips.
+const STRAY_OUT: f32 = 0.006;
+/// Share of the strands on the hairline itself that are short, and their lengths \[m\].
+const SHORT: (f32, [f32; 2]) = (0.5, [0.008, 0.035]);
+
+/// A shaped strand and its diameter \[m\].
+pub(super) struct Shaped {
+    pub points: Vec<Vec3>,
+    pub width: f32,
+}
+
+/// Shapes strands between guides; `clumps` gives the guide in the middle of each guide's lock.
+pub(super) fn shape(
+    settings: &StyleSettings,
+    mannequin: &Mannequin,
+    guides: &[Strand],
+    clumps: &[u32],
+    hair: &[Between],
+) -> Vec<Shaped> {
+    let shaped = hair.par_iter().enumerate().map(|(index, own)| {
+        let lock = index / SMALL_LOCK;
+        let middle = &hair[(lock * SMALL_LOCK + SMALL_LOCK / 2).min(hair.len() - 1)];
+        let clump = clumps[own.guide];
+        let one = One { settings, own, middle, large: &guides[clump as usize], clump, lock, index };
+        one.shape(mannequin)
+    });
+    shaped.collect()
+}
+
+/// A strand while it is shaped.
+struct One<'a> {
+    settings: &'a StyleSettings,
+    own: &'a Between,
+    /// In the middle of its small and of its large lock.
+    middle: &'a Between,
+    large: &'a Strand,
+    clump: u32,
+    lock: usize,
+    index: usize,
+}
+
+impl One<'_> {
+    fn shape(&self, mannequin: &Mannequin) -> Shaped {
+        let mut random = Random::new(self.settings.seed, 7_000_000_000 + self.index as u64);
+        let is_stray = random.unit() < self.settings.strays;
+        let [pull, frizz, depth, thick] = std::array::from_fn(|_| random.unit());
+        let strand = &self.own.strand;
+        let length: f32 = strand.points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+        let bends = Bends::in_lock(self.settings, strand, self.clump, self.lock, self.index);
+        let wisp = Wisp::new(self.settings, &mut random, if is_stray { STRAY } else { 0.4 + 1.2 * frizz });
+        let held = if is_stray { 0.15 } else { 0.7 + 0.5 * pull };
+        let last = strand.points.len() - 1;
+        // Curls of a lock turn about one axis: its middle lends the directions across.
+        let across = frames(&self.large.points, self.large.root.normal);
+        let mut points: Vec<Vec3> = (0..=last)
+            .map(|point| {
+                let share = point as f32 / last as f32;
+                let tangent = tangent(&strand.points, point);
+                let up = across[point][1];
+                let up = (up - tangent * up.dot(tangent)).normalize_or(tangent.any_orthonormal_vector());
+                let frame = [tangent.cross(up), up];
+                let out = if is_stray { STRAY_OUT * share * share } else { 0.0 };
+                self.drawn(point, share, held)
+                    + bends.offset(self.settings, frame, share, length)
+                    + wisp.offset(frame, share * length)
+                    + up * out
+            })
+            .collect();
+        points[0] = strand.root.position;
+        let kept = self.kept(length, &mut random);
+        let mut even: Vec<Vec3> = equal_arcs(&cut(points, kept), last + 1).collect();
+        let clearance = CLEARANCE * (0.5 + 0.9 * depth);
+        for point in &mut even[1..] {
+            *point = outside(mannequin, *point, clearance);
+        }
+        let fine = 0.55 + 0.45 * self.own.density;
+        Shaped { points: even, width: WIDTH * (0.8 + 0.4 * thick) * fine }
+    }
+
+    /// A point drawn toward the middles of both locks.
+    fn drawn(&self, point: usize, share: f32, held: f32) -> Vec3 {
+        let toward = |here: Vec3, middle: Vec3, size: usize, most: f32, power: f32| {
+            let near = smooth(APART[size][0], APART[size][1], here.distance(middle));
+            here.lerp(middle, (most * held).min(1.0) * math::powf(share, power) * near)
+        };
+        let here = self.own.strand.points[point];
+        let small = toward(here, self.middle.strand.points[point], 1, self.settings.lock_share, 0.7);
+        toward(small, self.large.points[point], 0, self.settings.clump_share, 1.3)
+    }
+
+    /// Share of its length that is left of a strand: its lock and itself are cut, and hair on the hairline is short.
+    fn kept(&self, length: f32, random: &mut Random) -> f32 {
+        let mut lock = Random::new(self.settings.seed, 8_000_000_000 + self.lock as u64);
+        let [own, short, shorter] = std::array::from_fn(|_| random.unit());
+        let cut = self.settings.thinning * (0.6 * lock.unit() + 1.6 * own.powi(3));
+        let kept = (1.0 - cut).max(0.2);
+        let [least, most] = SHORT.1;
+        let is_short = short < SHORT.0 * (1.0 - self.own.density);
+        let left = if is_short { (least + (most - least) * shorter) / length.max(1e-3) } else { 1.0 };
+        kept.min(left)
+    }
+}
+
+/// The unit tangent at a point of a strand.
+fn tangent(points: &[Vec3], point: usize) -> Vec3 {
+    let (before, after) = (point.saturating_sub(1), (point + 1).min(points.len() - 1));
+    (points[after] - points[before]).normalize_or(Vec3::NEG_Y)
+}
+
+/// The first share of a strand.
+fn cut(mut points: Vec<Vec3>, share: f32) -> Vec<Vec3> {
+    let total: f32 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+    let mut left = share * total;
+    for point in 1..points.len() {
+        let length = points[point].distance(points[point - 1]);
+        if length >= left && share < 1.0 {
+            points[point] = points[point - 1].lerp(points[point], left / length.max(f32::MIN_POSITIVE));
+            points.truncate(point + 1);
+            break;
+        }
+        left -= length;
+    }
+    points
+}
+
+/// A strand's own slow waves about its lock.
+struct Wisp {
+    amplitude: f32,
+    phases: [f32; 4],
+    /// Angles for each metre of length.
+    rates: [f32; 4],
+}
+
+impl Wisp {
+    fn new(settings: &StyleSettings, random: &mut Random, size: f32) -> Self {
+        let phases = std::array::from_fn(|_| TAU * random.unit());
+        // Waves of 4.5 to 13 cm.
+        let rates = std::array::from_fn(|_| 48.0 + 90.0 * random.unit());
+        Self { amplitude: settings.frizz * size, phases, rates }
+    }
+
+    /// Offset \[m\] at a length along the strand \[m\].
+    fn offset(&self, [side, up]: [Vec3; 2], along: f32) -> Vec3 {
+        let wave = |which: usize| math::sin(self.phases[which] + self.rates[which] * along);
+        let grown = self.amplitude * smooth(0.0, 0.09, along);
+        grown * ((wave(0) + 0.5 * wave(1)) * side + (0.8 * wave(2) + 0.4 * wave(3)) * up)
+    }
+}
