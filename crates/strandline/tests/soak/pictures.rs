@@ -106,7 +106,7 @@ impl Person {
                 }
                 LiveEvent::Saved(_) => self.saved += 1,
                 LiveEvent::Paused => panic!("it stopped by itself"),
-                LiveEvent::Note(_) | LiveEvent::Recorded => {}
+                LiveEvent::Note(_) | LiveEvent::Recorded | LiveEvent::Exported(_) => {}
             }
         }
     }
