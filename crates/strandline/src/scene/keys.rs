@@ -145,8 +145,8 @@ impl Scene {
                 $(given.$section.into_iter().for_each(|given| self.$section.take(given));)*
             };
         }
-        take!(devices, groom, style, body, motion, wind, colliders, simulation, look, body_look);
-        take!(level_of_detail, camera, lights, surroundings, picture, film);
+        take!(devices, groom, ties, style, body, motion, wind, colliders, simulation, look, body_look);
+        take!(level_of_detail, camera, lights, surroundings, picture, film, timeline);
     }
 }
 

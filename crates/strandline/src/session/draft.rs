@@ -9,7 +9,7 @@ const FEW_SEGMENTS: usize = 24;
 const SMALL_MAP: u32 = 192;
 const FEW_SCATTERINGS: u32 = 2;
 const FEW_CELLS: u32 = 26;
-/// Widths and heights as shares of those of full pictures, and the most follow strands of a guide: one after the other
+/// Widths and heights as shares of those of full pictures, and the most drawn strands of a guide: one after the other
 /// where one takes too long. Fewer strands save more than fewer pixels.
 const STEPS: [(f64, u32); 4] = [(0.5, 6), (0.5, 4), (0.4, 3), (0.33, 3)];
 
@@ -51,9 +51,20 @@ pub(crate) fn simplified<T>(draft: Draft, view: &mut View, act: impl FnOnce(&mut
     let level = view.level_of_detail;
     let spans = view.painter.points_per_strand().saturating_sub(1).max(1);
     let segments_per_span = level.segments_per_span.min(FEW_SEGMENTS.div_ceil(spans) as u32);
+    let most = STEPS[draft.step].1;
+    let own = view.painter.bound().map_or(1, |bound| {
+        let guides = bound.binding().guides().strand_count();
+        bound.strands().strand_count().div_ceil(guides.max(1)) as u32
+    });
     view.level_of_detail = LevelOfDetail { segments_per_span, most_segments: 1.0, ..level };
+    if own > most {
+        // Of strands without follow strands some are left out, however near they are.
+        let least_strands = most as f32 / own as f32;
+        view.level_of_detail =
+            LevelOfDetail { full_distance: 1e-3, least_strands, least_segments: 1.0, ..view.level_of_detail };
+    }
     let mut look = view.look.clone();
-    look.follow_strands = look.follow_strands.min(STEPS[draft.step].1);
+    look.follow_strands = look.follow_strands.min((most / own).max(1));
     look.shadow.map_size = look.shadow.map_size.min(SMALL_MAP);
     let scatterings = &mut look.fibre.chiang.scatterings;
     *scatterings = (*scatterings).min(FEW_SCATTERINGS);

@@ -6,6 +6,8 @@ use strandline::{Backend, Change, FrameLoop, Look, Prepared, Ray, Scene};
 fn opened() -> FrameLoop {
     let mut scene = Scene::demo();
     scene.style.strand_count = 48;
+    // A hand holds guides: of so few none may lie near a drawn strand.
+    scene.groom.bound = Some(0);
     (scene.picture.width, scene.picture.height) = (48, 60);
     FrameLoop::open(Prepared::new(&scene).unwrap(), Backend::Cpu).unwrap()
 }

@@ -20,6 +20,7 @@ fn scene(clip: &str) -> Scene {
     let mut scene = Scene::demo();
     scene.set_style(Style::Bob);
     (scene.style.strand_count, scene.body.spacing) = (40, 0.01);
+    scene.groom.bound = Some(0);
     (scene.body.file, scene.body.clip) = (Some(bust()), Some(clip.to_owned()));
     scene.motion.name = MotionName::Still;
     (scene.devices.simulation, scene.devices.pictures) = (Backend::Cpu, Backend::Cpu);
