@@ -74,6 +74,10 @@ class Groom(TypedDict, total=False):
     first does not, and without a body those that taper the other way or end among the roots of all others. Allowed:
     one of auto, first, last."""
 
+    find_ties: bool
+    """Ties strands where they come together in a knot, as those of a ponytail do, unless the scene has `[[ties]]`.
+    Allowed: true or false."""
+
     own_look: bool
     """Draws colours and widths of the file in place of the look's. Allowed: true or false."""
 
@@ -97,7 +101,7 @@ class Groom(TypedDict, total=False):
 
     bound: int
     """Strands that a style grows in all, of which `style.strand_count` are simulated and the others bound to them;
-    not more than those, all are simulated. Allowed: 0 to 8,000,000."""
+    not more than those, all are simulated. Without it eight for each that is simulated. Allowed: 0 to 8,000,000."""
 
     points_per_strand: int
     """Points on each guide. Without a groom file the default is that of the style. Allowed: 4 to 64."""
@@ -121,12 +125,22 @@ class Groom(TypedDict, total=False):
     of a file."""
 
 
+class Ties(TypedDict, total=False):
+    """A band about hair: the head holds every strand that passes through it, by two points."""
+
+    position: Sequence[float]
+    """Middle of the band, head space. Allowed: 3 numbers of -10,000 to 10,000 m."""
+
+    radius: float
+    """Distance within which strands are held. Allowed: 0.001 to 1 m."""
+
+
 class Style(TypedDict, total=False):
     """Settings of a grown style. The default of every number but the first two is that of the style."""
 
     style: str
-    """The style. Allowed: one of bob, long, wavy, curly, pixie, ponytail, buzz, side_swept, afro,
-    coils, bun, braid, beard, brows."""
+    """The style. Allowed: one of bob, long, wavy, curly, pixie, ponytail, buzz, side_swept, afro, coils, bun, braid,
+    beard, brows."""
 
     strand_count: int
     """Number of strands: guides for the renderer's follow strands. Allowed: 1 to 8,000,000."""
@@ -178,6 +192,22 @@ class Style(TypedDict, total=False):
 
     noise: float
     """Amplitude of each strand's own disorder at the tip. Allowed: 0 to 0.1 m."""
+
+    lock_share: float
+    """Share of the way to the middle of its small lock, eight neighbours, that a strand between the guides is drawn
+    at the tip. Allowed: 0 to 1."""
+
+    frizz: float
+    """Mean amplitude of the waves that each strand between the guides has of its own. Allowed: 0 to 0.05 m."""
+
+    strays: float
+    """Share of the strands between the guides that leave their lock. Allowed: 0 to 1."""
+
+    thinning: float
+    """Share of the length by which the ends of locks and of strands between the guides differ. Allowed: 0 to 0.9."""
+
+    hairline: float
+    """Breadth of the hairline, along which hair grows denser, longer and thicker. Allowed: 0 to 0.05 m."""
 
 
 class BodyTeleports(TypedDict, total=False):
@@ -750,12 +780,16 @@ class SimulationVolume(TypedDict, total=False):
     """Keeps the density of hair: pressed hair spreads again. Single locks still pass through each other. Allowed:
     true or false."""
 
+    method: str
+    """Flow that the volume holds back. Allowed: one of one_sided, incompressible."""
+
     cells: Sequence[int]
     """Cells along x, y and z. Allowed: 3 whole numbers of 4 to 512."""
 
     flip_share: float
     """FLIP share of the velocity update in a step of 1/60 s, 0 is PIC and 1 is FLIP [Chen2011 eq. 5]. A step of
-    another length takes as much of PIC in a second, and no more than all. Allowed: 0 to 1."""
+    another length takes as much of PIC in a second, and no more than all. In a one-sided volume of packed hair alone.
+    Allowed: 0 to 1."""
 
     tolerance: float
     """Relative residual at which the pressure solve stops. Allowed: 1e-12 to 1."""
@@ -1314,6 +1348,10 @@ class SceneSections(TypedDict, total=False):
 
     groom: Groom
     """Strands from a file, and how guides are made of strands."""
+
+    ties: Sequence[Ties]
+    """Bands about hair; none named means those of the knots that are found, see `groom.find_ties`. Allowed: 0 to
+    64."""
 
     style: Style
     """Settings of a grown style. The default of every number but the first two is that of the style."""
