@@ -16,7 +16,9 @@ fn opened() -> FrameLoop {
 fn ray(hair: &mut FrameLoop) -> Ray {
     let camera = *hair.camera();
     let points = hair.points().unwrap().to_vec();
-    let near = points.iter().copied().max_by(|one, other| one.z.total_cmp(&other.z)).unwrap();
+    // The nearest: no part of the head lies before it.
+    let apart = |point: &Vec3| point.distance(camera.position);
+    let near = points.iter().copied().min_by(|one, other| apart(one).total_cmp(&apart(other))).unwrap();
     let view = camera.view_from_world().transform_point3(near);
     Ray::new(&camera, Vec2::new(view.x, view.y) * camera.focal() / -view.z)
 }
