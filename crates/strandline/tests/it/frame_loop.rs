@@ -16,9 +16,11 @@ fn opened() -> FrameLoop {
 fn ray(hair: &mut FrameLoop) -> Ray {
     let camera = *hair.camera();
     let points = hair.points().unwrap().to_vec();
-    // The nearest: no part of the head lies before it.
+    // Near the tips, which can be led away, and the nearest: no part of the body lies before it.
+    let lowest = points.iter().map(|point| point.y).fold(f32::INFINITY, f32::min);
     let apart = |point: &Vec3| point.distance(camera.position);
-    let near = points.iter().copied().min_by(|one, other| apart(one).total_cmp(&apart(other))).unwrap();
+    let low = points.iter().copied().filter(|point| point.y < lowest + 0.1);
+    let near = low.min_by(|one, other| apart(one).total_cmp(&apart(other))).unwrap();
     let view = camera.view_from_world().transform_point3(near);
     Ray::new(&camera, Vec2::new(view.x, view.y) * camera.focal() / -view.z)
 }

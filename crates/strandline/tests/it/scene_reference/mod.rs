@@ -150,7 +150,8 @@ fn colours_and_looks_that_a_file_gives_are_meant() {
         },
     };
     let read = |text: &str| Scene::parse(text, "scene").unwrap();
-    assert_eq!(read("[look]\npreset = 'red'").look, Look::red());
+    // A grown style has strands of its own between guides, and few follow strands.
+    assert_eq!(read("[look]\npreset = 'red'").look, Look { follow_strands: 2, ..Look::red() });
     assert_eq!(read("").look.fibre.chiang.pigment, Pigment::Melanin);
     assert_eq!(read("[look]\ntip_color = [0.1, 0.2, 0.3]").look.fibre.chiang.pigment, Pigment::Color);
     let both = "[look]\nroot_color = [0.1, 0.2, 0.3]\n[look.fibre.chiang]\npigment = 'melanin'";
