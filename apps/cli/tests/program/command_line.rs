@@ -53,7 +53,8 @@ fn render_writes_frames_a_sheet_and_a_moving_picture() {
     for key in times.iter().chain(&others) {
         assert!(keys(&report).contains(key), "{key} is missing in {output}");
     }
-    assert_eq!((report["frames"].as_u64(), report["follow_strands"].as_u64()), (Some(2), Some(80)));
+    // 40 guides, eight strands of the style's own for each, two follow strands for each of these.
+    assert_eq!((report["frames"].as_u64(), report["follow_strands"].as_u64()), (Some(2), Some(640)));
     for name in ["frame_0000.png", "frame_0001.png", "sheet.png"] {
         let file = std::fs::read(folder.path().join("out/small").join(name)).unwrap();
         assert!(file.starts_with(b"\x89PNG") && file.ends_with(b"IEND\xaeB`\x82"), "{name} is not whole");

@@ -96,7 +96,7 @@ fn frequent_settings_have_flags() {
     };
     let found = picture("flags.png", &flags);
     let settings = [
-        ("look.preset", "red"),
+        ("look.preset", "copper"),
         ("wind.velocity", "[-2, 0, 1]"),
         ("camera.view", "side"),
         ("film.frames_per_second", "24"),
@@ -111,7 +111,12 @@ fn frequent_settings_have_flags() {
     let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
     assert!(found == picture("set.png", &settings), "flags and settings draw different pictures");
     assert!(found != picture("plain.png", &["--frames", "1", "--size", "32x24"]));
-    fails(at, &["render", "--look", "purple"], 2, &["purple", "brown, black, blonde, red, grey", "#rrggbb"]);
+    fails(
+        at,
+        &["render", "--look", "purple"],
+        2,
+        &["purple", "brown, black, blonde, red, copper, grey", "#rrggbb"],
+    );
     fails(at, &["render", "--view", "above"], 2, &["above", "front, three_quarter, side, back"]);
     fails(at, &["sim", "--fps", "0"], 2, &["from 1 to 1000"]);
 }

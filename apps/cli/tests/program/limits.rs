@@ -53,7 +53,7 @@ fn render(keys: &str) -> Output {
     limited(folder.path(), &["render", "--scene", "scene.toml"])
 }
 
-const FEW: &str = "style = { strand_count = 30 }\n";
+const FEW: &str = "style = { strand_count = 30 }\ngroom.bound = 0\n";
 /// Parts of the message that refuses too much memory.
 const TOO_MUCH: [&str; 2] = ["more than the 1024 MiB", "STRANDLINE_MEMORY"];
 
@@ -88,7 +88,9 @@ fn strands_points_and_segments_at_their_most() {
         "groom.points_per_strand = 64\nlevel_of_detail.segments_per_span = 16\nlook.follow_strands = 64";
     runs(&render(&format!("{FEW}{fine}")));
     refused(&render(fine), &["look.follow_strands = 64"]);
-    let strands = render("style.strand_count = 8000000\ngroom.points_per_strand = 64");
+    let strands = render(
+        "style.strand_count = 8000000\ngroom.points_per_strand = 64\ngroom.bound = 0\nlook.follow_strands = 16",
+    );
     refused(&strands, &["look.follow_strands = 16 on each of 8000000 guides"]);
     let folder = tempfile::tempdir().unwrap();
     let grown =
