@@ -64,7 +64,7 @@ fn render_writes_frames_a_sheet_and_a_moving_picture() {
     assert_eq!(moving.iter().filter(|there| **there).count(), 1);
     for name in times {
         let stages = keys(&report[name]["stages"]);
-        assert_eq!(stages.len(), 7, "{name}: {stages:?}");
+        assert_eq!(stages.len(), 8, "{name}: {stages:?}");
     }
     // Nothing is simulated beside the only picture of a film.
     let output = works(folder.path(), &["render", "--scene", "small.toml", "--frames", "1", "--json"]);
