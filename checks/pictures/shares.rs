@@ -17,18 +17,18 @@ fn mean(layers: &Layers, mask: &[bool]) -> f32 {
 law! {
     fn light_is_scattered_as_much_by_some_of_many_strands_as_by_all_of_few(on) {
         let lights = Light::studio(Camera::front().target).map(|light| Light { samples: 1, ..light });
-        let light = |guides| {
-            let head = Head::of(guides, 384);
+        // Of the same roots: other roots alone change the light by 4 %.
+        let light = |guides, without| {
+            let head = Head::without(without, guides, 384);
             let layers = head.lit_by(on, Preset::Blonde, &lights);
             mean(&layers, &head.crown(&layers))
         };
         // Of 8,176 strands all are summed, of 8,192 every second; of 16,368 every second, of 16,384 every fourth.
         // A software adapter draws the pair that has both.
         for &guides in on.either(&[512, 1_024][..], &[1_024]) {
-            let (few, many) = (light(guides - 1), light(guides));
+            let (few, many) = (light(guides, 1), light(guides, 0));
             // Most of the light of blonde hair is scattered; half of the hair scatters far less of it.
-            // A head of one guide more has other roots too: .653 and .626 were seen of 511 and 512.
-            assert!((many / few - 1.0).abs() < 0.06, "{guides}: {few} and {many}");
+            assert!((many / few - 1.0).abs() < 0.03, "{guides}: {few} and {many}");
         }
     }
 }

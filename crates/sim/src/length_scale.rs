@@ -52,7 +52,9 @@ impl Lengths {
         let points = model.points_per_strand;
         let mut rest = RestShape::clone(&model.rest);
         for (block, scale) in scale.iter().enumerate() {
-            scale_block(&model.rest, &mut rest, block * points..(block + 1) * points, scale);
+            let range = block * points..(block + 1) * points;
+            let held = last_held(&model.inverse_mass[range.clone()]);
+            scale_block(&model.rest, &mut rest, range, scale, held);
         }
         Self { scale, rest: Arc::new(rest) }
     }
@@ -66,15 +68,30 @@ impl Lengths {
     }
 }
 
+/// The last point of each strand of a block that something holds, before a free end; without one, as of a rope that is
+/// held at both ends, the root.
+fn last_held(inverse_mass: &[Lanes]) -> [usize; LANES] {
+    std::array::from_fn(|lane| {
+        let held = inverse_mass.iter().rposition(|inverse| inverse.0[lane] == 0.0);
+        held.filter(|point| point + 1 < inverse_mass.len()).unwrap_or(0)
+    })
+}
+
 /// Gives the strands of a block their share of the length at rest: the last segments change first, as far
-/// as they may, and those near the root stay.
-fn scale_block(rest: &RestShape, lengths: &mut RestShape, range: Range<usize>, scale: &Lanes) {
+/// as they may, and those near the root stay. What lies between a root and a tie stays too, since neither end can move.
+fn scale_block(
+    rest: &RestShape,
+    lengths: &mut RestShape,
+    range: Range<usize>,
+    scale: &Lanes,
+    held: [usize; LANES],
+) {
     let points = range.len();
     let first = range.start;
     for lane in 0..LANES {
         let total: f32 = range.clone().map(|index| rest.stretch[index].0[lane]).sum();
         let mut missing = (scale.0[lane] - 1.0) * total;
-        for index in range.clone().skip(1).rev() {
+        for index in range.clone().skip(held[lane].max(1)).rev() {
             let own = rest.stretch[index].0[lane];
             let added = missing.clamp((SHORTEST - 1.0) * own, (LONGEST - 1.0) * own);
             lengths.stretch[index].0[lane] = own + added;
@@ -108,5 +125,44 @@ fn slide(positions: &mut [Vec3Lanes], lengths: &[Lanes]) {
             before = here;
             positions[point].set(lane, moved);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use strandline_groom::{Groom, Guides};
+
+    use super::*;
+    use crate::Settings;
+
+    /// Ten strands of eight points, 7 cm long, held at their roots and at some points more.
+    fn model(held: impl Fn(usize) -> bool + Sync) -> Model {
+        let mut groom = Groom::empty(8e-5);
+        for strand in 0..10 {
+            let root = Vec3::X * 0.01 * strand as f32;
+            groom.push([root, root + Vec3::NEG_Y * 0.07]);
+        }
+        let guides = Guides::resample(&groom, 8).unwrap();
+        let settings = Settings::default();
+        let rest = RestShape::new(&guides, 6.5e-6);
+        Model::with_rest(&guides, rest, |_, point| point < 2 || held(point), &settings, Vec::new()).unwrap()
+    }
+
+    fn lengths(model: &Model, scale: f32) -> Vec<f32> {
+        let lengths = Lengths::new(model, &[scale; 10]).unwrap();
+        lengths.rest.stretch[..7].iter().map(|lanes| lanes.0[3]).collect()
+    }
+
+    #[test]
+    fn hair_between_a_root_and_a_tie_keeps_its_length() {
+        let tied = model(|point| point == 3 || point == 4);
+        for scale in [0.05, 0.5, 1.8] {
+            let found = lengths(&tied, scale);
+            assert!(found[..4].iter().all(|length| (length - 0.01).abs() < 1e-6), "{scale}: {found:?}");
+            assert!((found[6] - 0.01).abs() > 4e-3, "{scale}: {found:?}");
+        }
+        // Loose strands give up all but their first segment, and ropes change as a whole.
+        assert!(lengths(&model(|_| false), 0.1)[1] < 2e-3);
+        assert!(lengths(&model(|point| point == 7), 0.1)[1] < 2e-3);
     }
 }

@@ -109,17 +109,24 @@ fn hair_that_leads_up_from_low_roots_is_refused_and_its_axes_keep_it() {
 #[test]
 fn hair_that_lies_on_a_head_in_no_axes_is_refused() {
     let mesh = Mannequin::new().mesh();
-    let mut groom = hair(Style::Long);
-    let mut random = Random::new(0, 5);
-    for strand in 0..groom.strand_count() {
-        let range = groom.range(strand);
-        let root = groom.points[range.start];
-        let moved = root * (0.5 + 0.9 * random.unit()) - root;
-        groom.points[range].iter_mut().for_each(|point| *point += moved + Vec3::X * 2.0);
+    let mut in_no_axes = 0;
+    for seed in 3..8 {
+        let mut groom = hair(Style::Long);
+        let mut random = Random::new(0, seed);
+        for strand in 0..groom.strand_count() {
+            let range = groom.range(strand);
+            let root = groom.points[range.start];
+            let moved = root * (0.5 + 0.9 * random.unit()) - root;
+            groom.points[range].iter_mut().for_each(|point| *point += moved + Vec3::X * 2.0);
+        }
+        // By chance two axes may fit as badly as each other, which is refused as well.
+        let problem = refused(&groom, &mesh);
+        let alike = problem.contains("two ways nearly alike");
+        in_no_axes += usize::from(problem.contains("in no axes"));
+        assert!((alike || problem.contains("in no axes")) && problem.contains("--up y"), "{problem}");
+        assert!(loaded(&groom, &mesh, |scene| scene.groom.up = Up::Y).is_ok());
     }
-    let problem = refused(&groom, &mesh);
-    assert!(problem.contains("in no axes") && problem.contains("--up y"), "{problem}");
-    assert!(loaded(&groom, &mesh, |scene| scene.groom.up = Up::Y).is_ok());
+    assert!(in_no_axes >= 2, "{in_no_axes} of 5");
 }
 
 #[test]

@@ -87,7 +87,7 @@ impl<E: Executor> Session<E> {
     ) -> Result<(), Error> {
         let guides = self.view.guides.strand_count();
         let (settings, length) = (self.kept.settings.clone(), self.kept.length);
-        let (time, holds, settings, length) = self.executor.with(|simulation| {
+        let (time, led) = self.executor.with(|simulation| {
             simulation.go_back(bookmark)?;
             for task in tasks {
                 let is_frame = task.is_frame();
@@ -101,20 +101,22 @@ impl<E: Executor> Session<E> {
             let now = simulation.settings();
             let settings = settings.filter(|wanted| with_hairs(wanted, simulation.hairs) != *now);
             let length = length.filter(|wanted| simulation.engine.last_state().length_scale(0) != *wanted);
-            Ok((simulation.clock.time(), simulation.engine.grabbed() > 0, settings, length))
+            let releases = (simulation.engine.grabbed() > 0).then_some(Task::Release);
+            let lengths = length.map(|length| Task::Lengths(vec![length; guides]));
+            let mut led = Vec::new();
+            for task in [releases, settings.map(Task::Settings), lengths].into_iter().flatten() {
+                match task.clone().perform(simulation) {
+                    Ok(_) => led.push(task),
+                    // Refused when it was asked for, and told then.
+                    Err(error) if error.gpu().is_none() => {}
+                    Err(error) => return Err(error),
+                }
+            }
+            Ok((simulation.clock.time(), led))
         })?;
-        self.kept.tasks.iter_mut().for_each(Vec::clear);
+        self.kept.tasks.iter_mut().for_each(|tasks| tasks.clone_from(&led));
         self.direction.go_to(time);
         self.grabbed = 0;
-        if holds {
-            self.start(Task::Release, false, 0)?;
-        }
-        if let Some(settings) = settings {
-            self.start(Task::Settings(settings), false, 0)?;
-        }
-        if let Some(length) = length {
-            self.start(Task::Lengths(vec![length; guides]), false, 0)?;
-        }
         Ok(())
     }
 

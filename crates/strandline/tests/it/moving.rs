@@ -163,13 +163,17 @@ fn hair_on_a_moving_skin_stays_on_its_gpu_and_moves_as_on_the_cpu() {
         }
     };
     assert!(!notes.contains("on the CPU") || notes.contains("for tests"), "{notes}");
-    let mut apart: Vec<f32> = points.iter().zip(&expected).map(|(one, other)| one.distance(*other)).collect();
-    apart.sort_by(f32::total_cmp);
-    // Planes of the CPU ride the skin between looks, those of a GPU are looked up anew.
-    // One of the 40 strands may lie on the other side of a fold of the ear, where the CPU alone counts crossings.
-    let [middle, most] = [apart[apart.len() / 2], apart[apart.len() * 95 / 100]];
-    println!("half within {middle} m, 95 of 100 within {most} m");
-    assert!(middle < 2e-4 && most < 2e-3, "{middle} {most}");
+    let apart: Vec<f32> = points.iter().zip(&expected).map(|(one, other)| one.distance(*other)).collect();
+    // Planes of the CPU ride the skin between looks, those of a GPU are looked up anew. A strand that begins 3 cm above an
+    // ear falls behind it on the CPU and over it on a software adapter, 3 cm away at its end.
+    let strands = 40;
+    let mut farthest: Vec<f32> = apart
+        .chunks_exact(apart.len() / strands)
+        .map(|points| points.iter().copied().fold(0.0, f32::max))
+        .collect();
+    farthest.sort_by(f32::total_cmp);
+    let [middle, last_but_one] = [farthest[strands / 2], farthest[strands - 2]];
+    assert!(middle < 2e-4 && last_but_one < 2e-3, "{farthest:?}");
 }
 
 #[test]

@@ -199,3 +199,23 @@ fn it_plays_in_a_loop_at_its_own_speed_by_the_clock() {
         playhead(frame);
     }
 }
+
+#[test]
+fn a_refused_change_is_told_once_however_often_a_person_goes_back() {
+    let live = paused(shaken());
+    steps(&live, 3);
+    // Taken, refused, and refused: the way back must not ask for the last two again.
+    let mut settings = shaken().simulation;
+    settings.gravity *= 0.5;
+    live.send(Change::Settings(Box::new(settings.clone())));
+    settings.strands.constrain.iterations = 0;
+    live.send(Change::Settings(Box::new(settings)));
+    live.send(Change::Length(2.5));
+    for frame in [2, 1] {
+        seek(&live, frame);
+        steps(&live, 1);
+    }
+    let events = live.take_events();
+    let told: Vec<&LiveEvent> = events.iter().filter(|event| matches!(event, LiveEvent::Error(..))).collect();
+    assert_eq!(told.len(), 2, "{told:?}");
+}
