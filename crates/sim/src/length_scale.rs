@@ -88,10 +88,10 @@ fn scale_block(
 ) {
     let points = range.len();
     let first = range.start;
-    for lane in 0..LANES {
+    for (lane, &held) in held.iter().enumerate() {
         let total: f32 = range.clone().map(|index| rest.stretch[index].0[lane]).sum();
         let mut missing = (scale.0[lane] - 1.0) * total;
-        for index in range.clone().skip(held[lane].max(1)).rev() {
+        for index in range.clone().skip(held.max(1)).rev() {
             let own = rest.stretch[index].0[lane];
             let added = missing.clamp((SHORTEST - 1.0) * own, (LONGEST - 1.0) * own);
             lengths.stretch[index].0[lane] = own + added;

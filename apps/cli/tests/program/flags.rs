@@ -113,9 +113,9 @@ fn frequent_settings_have_flags() {
     assert!(found != picture("plain.png", &["--frames", "1", "--size", "32x24"]));
     fails(
         at,
-        &["render", "--look", "purple"],
+        &["render", "--look", "plaid", "--frames", "1", "--size", "8x8"],
         2,
-        &["purple", "brown, black, blonde, red, copper, grey", "#rrggbb"],
+        &["plaid", "brown, black, blonde, red, copper, grey", "#rrggbb"],
     );
     fails(at, &["render", "--view", "above"], 2, &["above", "front, three_quarter, side, back"]);
     fails(at, &["sim", "--fps", "0"], 2, &["from 1 to 1000"]);

@@ -30,6 +30,7 @@ impl egui::DroppedFile for Dropped {
 pub fn scene() -> Scene {
     let mut scene = Scene::demo();
     scene.style.strand_count = 60;
+    scene.groom.bound = Some(0);
     scene.body.spacing = 0.01;
     scene.simulation.volume.cells = [12; 3];
     scene.devices.simulation = strandline::Backend::Cpu;

@@ -5,7 +5,12 @@ use glam::Vec3;
 use super::{
     Bookmark, Executor, Live, Session, Task, job::Job, kept::Held, moment::Moment, simulation::with_hairs,
 };
-use crate::{Error, body::BodyFrame, groom::Vec3Lanes, sim::Settings};
+use crate::{
+    Error,
+    body::BodyFrame,
+    groom::Vec3Lanes,
+    sim::{Settings, State},
+};
 
 impl<E: Executor> Session<E> {
     /// Hands a task over, as [`Session::start`], with a bookmark at its end where `marks`.
@@ -120,15 +125,19 @@ impl<E: Executor> Session<E> {
         Ok(())
     }
 
-    /// Other settings of the simulation.
+    /// Other settings of the simulation; those that are refused are not asked for again on the way back.
     pub(super) fn set_settings(&mut self, settings: Box<Settings>) -> Result<(), Error> {
-        self.kept.settings = Some(settings.clone());
+        if settings.check().is_ok() {
+            self.kept.settings = Some(settings.clone());
+        }
         self.start(Task::Settings(settings), false, 0)
     }
 
-    /// Another length of all strands.
+    /// Another length of all strands; as with settings, one that is refused is not asked for again.
     pub(super) fn set_length(&mut self, scale: f32) -> Result<(), Error> {
-        self.kept.length = Some(scale);
+        if State::LENGTH_SCALES.contains(&scale) {
+            self.kept.length = Some(scale);
+        }
         self.start(Task::Lengths(vec![scale; self.view.guides.strand_count()]), false, 0)
     }
 }

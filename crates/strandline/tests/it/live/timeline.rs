@@ -201,21 +201,29 @@ fn it_plays_in_a_loop_at_its_own_speed_by_the_clock() {
 }
 
 #[test]
-fn a_refused_change_is_told_once_however_often_a_person_goes_back() {
-    let live = paused(shaken());
-    steps(&live, 3);
-    // Taken, refused, and refused: the way back must not ask for the last two again.
+fn a_refused_change_is_told_once_and_the_accepted_one_before_it_stays_on_the_way_back() {
+    let (refusing, plain) = (paused(shaken()), paused(shaken()));
     let mut settings = shaken().simulation;
     settings.gravity *= 0.5;
-    live.send(Change::Settings(Box::new(settings.clone())));
-    settings.strands.constrain.iterations = 0;
-    live.send(Change::Settings(Box::new(settings)));
-    live.send(Change::Length(2.5));
-    for frame in [2, 1] {
-        seek(&live, frame);
-        steps(&live, 1);
+    for live in [&refusing, &plain] {
+        steps(live, 3);
+        live.send(Change::Settings(Box::new(settings.clone())));
+        live.send(Change::Length(1.5));
     }
-    let events = live.take_events();
-    let told: Vec<&LiveEvent> = events.iter().filter(|event| matches!(event, LiveEvent::Error(..))).collect();
-    assert_eq!(told.len(), 2, "{told:?}");
+    // Refused, both: the way back must neither ask for them again nor forget those before them.
+    settings.strands.constrain.iterations = 0;
+    refusing.send(Change::Settings(Box::new(settings)));
+    refusing.send(Change::Length(2.5));
+    for frame in [2, 1] {
+        let pictures = [&refusing, &plain].map(|live| {
+            seek(live, frame);
+            steps(live, 1).picture
+        });
+        assert!(pictures[0] == pictures[1], "after frame {frame}");
+    }
+    let errors = |live: &Live| {
+        let events = live.take_events();
+        events.iter().filter(|event| matches!(event, LiveEvent::Error(..))).count()
+    };
+    assert_eq!((errors(&refusing), errors(&plain)), (2, 0));
 }
