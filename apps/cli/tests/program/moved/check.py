@@ -74,7 +74,12 @@ def usd(path, target, arrays, meta):
         assert np.allclose(there, turn(np.array(world)) * scale, atol=1e-5 * scale), (there, world)
     if target == "unreal":
         guide = UsdGeom.PrimvarsAPI(curves).GetPrimvar("groom_guide")
-        assert guide.GetInterpolation() == "constant" and list(guide.Get()) == [int(meta["what"] == "guides")]
+        if "guide_flags" in arrays:
+            # Strands of their own, a few of which are the guides.
+            assert guide.GetInterpolation() == "uniform" and 0 < arrays["guide_flags"].sum() < len(counts)
+            assert list(guide.Get()) == arrays["guide_flags"].astype(int).tolist()
+        else:
+            assert guide.GetInterpolation() == "constant" and list(guide.Get()) == [int(meta["what"] == "guides")]
         assert len(UsdGeom.PrimvarsAPI(curves).GetPrimvar("groom_id").Get()) == len(counts)
     print(f"{path}: {len(codes)} frames for {target}")
 
