@@ -8,7 +8,7 @@ mod timeline;
 use std::time::Duration;
 
 use eframe::egui;
-use person::{Window, button, scene};
+use person::{STRANDS, Window, button, scene};
 use strandline::{Picture, Scene};
 use strandline_viewer::App;
 
@@ -129,7 +129,7 @@ fn a_dropped_groom_is_loaded_and_a_bad_file_shows_its_error_while_the_old_hair_s
     window.until("the error", |app| app.error().is_some());
     assert!(window.app().error().unwrap().contains("bad.hair"), "{:?}", window.app().error());
     window.settle();
-    assert_eq!(window.app().shown().unwrap().drawing.strands, 60, "the old hair stays");
+    assert_eq!(window.app().shown().unwrap().drawing.strands, STRANDS, "the old hair stays");
     assert_eq!(window.picture(), before);
     assert_eq!(window.app().seen().groom.file, None, "a scene that is saved now is that of the old hair");
     let text = folder.path().join("notes.txt");

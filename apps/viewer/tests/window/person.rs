@@ -26,11 +26,13 @@ impl egui::DroppedFile for Dropped {
     }
 }
 
+/// Strands of [`scene`]: eight for each of its guides.
+pub const STRANDS: usize = 8 * 60;
+
 /// A scene that is drawn quickly on the CPU.
 pub fn scene() -> Scene {
     let mut scene = Scene::demo();
     scene.style.strand_count = 60;
-    scene.groom.bound = Some(0);
     scene.body.spacing = 0.01;
     scene.simulation.volume.cells = [12; 3];
     scene.devices.simulation = strandline::Backend::Cpu;

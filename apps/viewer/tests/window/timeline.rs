@@ -4,7 +4,7 @@ use eframe::egui::{self, Key, Modifiers, accesskit::Role};
 use strandline::Picture;
 use strandline_viewer::App;
 
-use crate::person::{Window, scene};
+use crate::person::{STRANDS, Window, scene};
 
 /// A window whose hair has played for some frames and stands still.
 fn played(frames: u32) -> Window {
@@ -109,7 +109,7 @@ fn another_groom_is_undone_by_loading_the_scene_before() {
     let strands = |app: &App| app.shown().map_or(0, |shown| shown.drawing.strands);
     window.until("the groom", |app| strands(app) == 40);
     window.press_with(Modifiers::COMMAND, Key::Z);
-    window.until("the scene before", |app| strands(app) == 60);
+    window.until("the scene before", |app| strands(app) == STRANDS);
     window.settle();
     assert_eq!(window.app().seen().to_toml(), before.to_toml());
     assert!(window.picture() == picture);
