@@ -1,5 +1,6 @@
-//! The long forms of checks that are short in `cargo xtask test`, and the day on which they last passed.
+//! The long forms of checks that are short in `cargo xtask test`, and the day on which each last passed.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -22,40 +23,71 @@ const TESTS: [((&str, &str), [&str; 2]); 6] = [
     (("STRANDLINE_FULL", "1"), ["laws", "rod_styles::"]),
 ];
 
-/// Contents of bench/long.json.
-#[derive(Debug, Deserialize, Serialize)]
-struct Record {
-    /// Day in UTC, as `2026-11-25`.
-    date: String,
-    /// Checks that passed on that day.
-    checks: Vec<String>,
-}
+/// Contents of bench/long.json: the day in UTC, as `2026-11-25`, on which each check last passed.
+#[derive(Debug, Default, Deserialize, Serialize)]
+struct Record(BTreeMap<String, String>);
 
 fn file() -> PathBuf {
     root().join("bench/long.json")
 }
 
-/// Runs the long checks and records the day where all passed.
-pub fn run() -> bool {
-    let mut checks = vec!["bare".to_owned()];
-    let mut passed = bare::check();
-    for ((name, value), test) in TESTS {
-        println!("\n== {name}={value} {}", test.join(" "));
-        let mut command = cargo_command(&["test", "--workspace", "--test"]);
-        let required = [(name, value), (adapter::REQUIRED, "1"), (adapter::DISPLAY_REQUIRED, "1")];
-        passed &= command.args(test).envs(required).status().is_ok_and(|status| status.success());
-        checks.push(format!("{name}={value} {}", test.join(" ")));
-    }
-    let (sweep, swept) = python::long();
-    let (page, shown) = web::long();
-    checks.extend([sweep, page]);
-    passed && swept && shown && record(checks)
+/// A long check: its name, and what runs it and says whether it passed.
+type Check = (String, Box<dyn Fn() -> bool>);
+
+/// All long checks, in the order in which they run.
+fn checks() -> Vec<Check> {
+    let own = |name: &str, run: fn() -> bool| -> Check { (name.to_owned(), Box::new(run)) };
+    let test = |(variable, words): ((&'static str, &'static str), [&'static str; 2])| -> Check {
+        let name = format!("{}={} {}", variable.0, variable.1, words.join(" "));
+        (name, Box::new(move || passes(variable, words)))
+    };
+    let first = [own("bare", bare::check)];
+    first
+        .into_iter()
+        .chain(TESTS.map(test))
+        .chain([own("python", python::long), own("web", web::long)])
+        .collect()
 }
 
-fn record(checks: Vec<String>) -> bool {
+/// Runs the long checks whose names hold one of the words, all without words, and records the day for each that passes.
+/// False if one fails, or if no name holds a word.
+pub fn run(words: &[String]) -> bool {
+    let wanted = |name: &str| words.is_empty() || words.iter().any(|word| name.contains(word.as_str()));
+    let checks: Vec<Check> = checks().into_iter().filter(|(name, _)| wanted(name)).collect();
+    if checks.is_empty() {
+        println!("no long check is called {}", words.join(" or "));
+        return false;
+    }
+    let mut failed = Vec::new();
+    for (name, run) in checks {
+        println!("\n== {name}");
+        let passed = run() && record(&name);
+        failed.extend((!passed).then_some(name));
+    }
+    println!("{}", last_run());
+    if !failed.is_empty() {
+        println!("FAILED: {}", failed.join(", "));
+    }
+    failed.is_empty()
+}
+
+/// Runs tests by cargo's words for them.
+fn passes(variable: (&str, &str), words: [&str; 2]) -> bool {
+    let mut command = cargo_command(&["test", "--workspace", "--test"]);
+    let required = [variable, (adapter::REQUIRED, "1"), (adapter::DISPLAY_REQUIRED, "1")];
+    command.args(words).envs(required).status().is_ok_and(|status| status.success())
+}
+
+fn read() -> Record {
+    let text = std::fs::read_to_string(file()).ok();
+    text.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
+}
+
+fn record(name: &str) -> bool {
     let days = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs() / 86_400);
-    let record = serde_json::to_string_pretty(&Record { date: date(days), checks });
-    let text = record.expect("texts are JSON") + "\n";
+    let mut record = read();
+    record.0.insert(name.to_owned(), date(days));
+    let text = serde_json::to_string_pretty(&record).expect("texts are JSON") + "\n";
     let written = std::fs::write(file(), text);
     if let Err(error) = &written {
         println!("the day is not recorded: {error}: {}", file().display());
@@ -63,18 +95,16 @@ fn record(checks: Vec<String>) -> bool {
     written.is_ok()
 }
 
-/// A line with the day on which the long checks last passed.
+/// A line with the day on which each of the long checks last passed.
 pub fn last_run() -> String {
-    let text = std::fs::read_to_string(file()).ok();
-    line(text.and_then(|text| serde_json::from_str(&text).ok()))
+    let names: Vec<String> = checks().into_iter().map(|(name, _)| name).collect();
+    line(&names, &read())
 }
 
-fn line(record: Option<Record>) -> String {
-    let last = match record {
-        Some(Record { date, checks }) => format!("last passed on {date}: {}", checks.join(", ")),
-        None => "never passed".to_owned(),
-    };
-    format!("long checks (`cargo xtask long`) {last}")
+fn line(names: &[String], record: &Record) -> String {
+    let day = |name: &String| record.0.get(name).map_or("never", String::as_str);
+    let days: Vec<String> = names.iter().map(|name| format!("{name}: {}", day(name))).collect();
+    format!("long checks (`cargo xtask long`), last passed: {}", days.join(", "))
 }
 
 /// The date of a day since 1970-01-01, in the Gregorian calendar.
@@ -110,11 +140,19 @@ mod tests {
     }
 
     #[test]
-    fn the_last_day_is_named() {
-        let record =
-            Record { date: "2026-11-25".into(), checks: vec!["bare".into(), "STRANDLINE_KILLS=52".into()] };
-        let line_of_it = line(Some(record));
-        assert!(line_of_it.ends_with("last passed on 2026-11-25: bare, STRANDLINE_KILLS=52"), "{line_of_it}");
-        assert!(line(None).ends_with("never passed"));
+    fn the_last_day_of_each_is_named_and_one_that_never_passed() {
+        let record = Record([("bare".to_owned(), "2026-11-25".to_owned())].into());
+        let names = ["bare".to_owned(), "web".to_owned()];
+        assert!(line(&names, &record).ends_with("last passed: bare: 2026-11-25, web: never"));
+    }
+
+    #[test]
+    fn names_differ_and_an_unknown_one_is_refused() {
+        let mut names: Vec<String> = checks().into_iter().map(|(name, _)| name).collect();
+        let count = names.len();
+        names.sort();
+        names.dedup();
+        assert_eq!(names.len(), count);
+        assert!(!run(&["no such check".to_owned()]));
     }
 }

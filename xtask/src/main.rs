@@ -48,7 +48,8 @@ const USAGE: &str = "usage: cargo xtask COMMAND
            Debian's Chromium; --test compares the module in Node with the native program to the
            bit, and opens the page in Chromium; --serve serves it on this machine
   long     bare, web with --test, and the full length of the tests that `test` shortens: kills, random use of the
-           window, pictures and skins on a software adapter; records the day in bench/long.json
+           window, pictures and skins on a software adapter; records the day of each that passes in
+           bench/long.json. [WORD..] those alone whose names hold a word
   deny     check licences, sources and duplicates of dependencies with cargo-deny, and known
            faults if their list can be read; `test` does the first three if it is installed
   licences write docs/licences.md, the list of others' licences; [FILE] their texts as well";
@@ -65,7 +66,7 @@ enum Chore {
     Faults(faults::Wish),
     Bare,
     Web(web::Wish),
-    Long,
+    Long(Vec<String>),
     Deny,
     Licences(Option<String>),
     Help,
@@ -84,7 +85,7 @@ fn main() -> ExitCode {
         Some(Chore::Faults(wish)) => faults::faults(&wish),
         Some(Chore::Bare) => bare::check(),
         Some(Chore::Web(wish)) => web::web(wish),
-        Some(Chore::Long) => long::run(),
+        Some(Chore::Long(words)) => long::run(&words),
         Some(Chore::Deny) => licences::deny(),
         Some(Chore::Licences(texts)) => licences::write(texts.as_deref()),
         Some(Chore::Help) => {
@@ -115,7 +116,7 @@ fn chore(words: &[&str]) -> Option<Chore> {
         ["faults", words @ ..] => faults::Wish::parse(words).map(Chore::Faults),
         ["bare"] => Some(Chore::Bare),
         ["web", words @ ..] => web::Wish::parse(words).map(Chore::Web),
-        ["long"] => Some(Chore::Long),
+        ["long", words @ ..] => Some(Chore::Long(words.iter().map(|word| (*word).to_owned()).collect())),
         ["deny"] => Some(Chore::Deny),
         ["licences"] => Some(Chore::Licences(None)),
         ["licences", file] => Some(Chore::Licences(Some((*file).to_owned()))),

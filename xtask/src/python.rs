@@ -161,9 +161,9 @@ pub fn test() -> bool {
     passes(&python, &ALL, &[], programs::LONGEST)
 }
 
-/// Runs the long form of the package's tests, and with Blender where it can be had. Returns its name, and true where it
-/// passed.
-pub fn long() -> (String, bool) {
+/// Runs the long form of the package's tests, and with Blender where it can be had. True if all
+/// of it passed.
+pub fn long() -> bool {
     let blender = blender();
     let (mut tests, mut environment) = (LONG.to_vec(), vec![JOBS, AN_HOUR_EACH]);
     match &blender {
@@ -180,8 +180,7 @@ pub fn long() -> (String, bool) {
     if python.is_none() {
         println!("the long tests of the Python package did not run: {NONE}");
     }
-    let passed = python.is_some_and(|python| passes(&python, &tests, &environment, LONG_FORM));
-    (format!("{}={} {}", JOBS.0, JOBS.1, tests.join(" ")), passed)
+    python.is_some_and(|python| passes(&python, &tests, &environment, LONG_FORM))
 }
 
 /// Writes the sections of a scene of the Python package from the settings table; false if that fails, true without a
