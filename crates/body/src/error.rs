@@ -49,7 +49,7 @@ pub enum BodyError {
     /// A distance grid would be too large.
     #[error(
         "a distance grid of {} x {} x {} cells is too large, expected {limit} nodes at most even at 0.1 m; \
-         scale the mesh to metres, or look for a vertex that is far off",
+         scale the mesh to metres (`body.scale` of a scene), or look for a vertex that is far off",
         cells[0], cells[1], cells[2]
     )]
     GridTooLarge {

@@ -1,6 +1,6 @@
 //! A grown style on a body from a file: the built-in head's scalp is fitted to the head of the body.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::{marked, skull::Skull};
 use crate::{
@@ -36,13 +36,26 @@ pub(super) fn onto(
     if let Some(shape) = shape {
         lead(groom, shape);
     }
-    let percent = |ratio: f32| 100.0 * ratio;
-    Ok(on_scalp.or_else(|| Some(format!(
-        "the style grows on the highest part of the body: {:.0} % as wide and {:.0} % as deep as the built-in head",
-        percent(ratio.x),
-        percent(ratio.y)
-    ))))
+    Ok(on_scalp.or_else(|| Some(note(ratio))))
 }
+
+/// The note on a head of other width and depth than the built-in one, with what to do about one of no person's size.
+fn note(ratio: Vec2) -> String {
+    let is_of_a_person = A_HEAD.contains(&ratio.x) && A_HEAD.contains(&ratio.y);
+    let mend = if is_of_a_person {
+        ""
+    } else {
+        "; `body.scale` makes a body that is not in metres as large as a person"
+    };
+    format!(
+        "the style grows on the highest part of the body: {:.0} % as wide and {:.0} % as deep as the built-in head{mend}",
+        100.0 * ratio.x,
+        100.0 * ratio.y
+    )
+}
+
+/// Widths and depths of heads, of people and of figures, over those of the built-in head.
+const A_HEAD: std::ops::RangeInclusive<f32> = 1.0 / 3.0..=3.0;
 
 /// Leads the roots of strands to a surface, and each strand with its root.
 pub(super) fn lead(groom: &mut Groom, shape: &Shape) {
@@ -133,5 +146,12 @@ mod tests {
         let highest = groom.roots().map(|root| root.y).fold(f32::NEG_INFINITY, f32::max);
         assert!(highest > middle.y + 0.95 * radius, "{highest}");
         assert!(groom.lengths()[0] > 1.2 * lengths[0] && note.contains("% as wide"), "{note}");
+    }
+
+    #[test]
+    fn a_head_of_no_persons_size_is_told_the_setting_that_scales_it() {
+        assert!(!note(Vec2::new(1.5, 0.8)).contains("body.scale"));
+        assert!(note(Vec2::new(84.0, 41.0)).contains("body.scale"));
+        assert!(note(Vec2::new(1.0, 0.01)).contains("body.scale"));
     }
 }
