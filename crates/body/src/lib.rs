@@ -7,6 +7,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
 
+mod beside;
 mod buried;
 mod bvh;
 mod closing;
@@ -38,6 +39,7 @@ mod nearest_place;
 mod neck;
 mod neck_solids;
 mod obj;
+mod obj_looks;
 mod parsing;
 mod part_names;
 mod ply;
@@ -57,6 +59,7 @@ mod solids;
 mod stl;
 mod teleports;
 mod texture;
+mod textures;
 mod triangle;
 mod triangle_tree;
 mod turn_out;

@@ -52,6 +52,9 @@ pub struct Materials {
     pub colors: Vec<Vec4>,
 }
 
+/// Most triangles of a body that is drawn with its own colours: their numbers fit the buffers of every GPU.
+const MOST_TRIANGLES: usize = 1 << 20;
+
 impl Materials {
     /// A single material without a look of its own, for a number of triangles.
     pub(crate) fn plain(triangles: usize) -> Self {
@@ -61,6 +64,22 @@ impl Materials {
             coordinates: vec![[Vec2::ZERO; 3]; triangles],
             ..Self::default()
         }
+    }
+
+    /// A single material of the colours of vertices, linear RGB and alpha, for a number of triangles.
+    pub(crate) fn of_vertices(colors: Vec<Vec4>, triangles: usize) -> Self {
+        let painted = Material { color: Some(Vec4::ONE), ..Material::default() };
+        Self { list: vec![painted], colors, ..Self::plain(triangles) }
+    }
+
+    /// The materials, unless a body has too many triangles to be drawn with them, which adds a note.
+    pub(crate) fn drawn(self, notes: &mut Vec<String>) -> Option<Self> {
+        if self.of_triangles.len() <= MOST_TRIANGLES {
+            return Some(self);
+        }
+        notes
+            .push(format!("a body of more than {MOST_TRIANGLES} triangles is drawn without its own colours"));
+        None
     }
 
     /// True where some part has a look of its own.

@@ -36,8 +36,9 @@ impl Mesh {
     /// Loads a file of a [`MeshFormat`], by its ending, scaled by `scale` \[m per unit\].
     ///
     /// All objects of the file become one mesh, those of glTF's default scene alone; polygons become triangles; clips
-    /// are ignored. Materials are those of glTF: what is wrong with them becomes a note. Skinned and morphed glTF meshes stand in their default pose. Vertices keep
-    /// the file's normals; where it gives none they are computed.
+    /// are ignored. Materials are those of glTF and of .mtl files, and colours of vertices: what is wrong with them becomes a note.
+    /// Skinned and morphed glTF meshes stand in their default pose. Vertices keep the file's normals; where it gives none
+    /// they are computed.
     ///
     /// # Errors
     /// See [`BodyError`].

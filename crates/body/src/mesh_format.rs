@@ -77,12 +77,12 @@ impl MeshFormat {
         match self {
             Self::Obj => match names {
                 Some(names) => obj::parse_part(bytes, names),
-                None => obj::parse(bytes),
+                None => obj::parse_with_looks(bytes, folder, notes),
             },
             Self::Gltf => gltf::parse(bytes, folder, names, notes),
             // These formats name no parts: no name is any of theirs.
             Self::Ply | Self::Stl if names.is_some() => Ok(Mesh::default()),
-            Self::Ply => ply::parse(bytes),
+            Self::Ply => ply::parse(bytes, notes),
             Self::Stl => stl::parse(bytes),
         }
     }

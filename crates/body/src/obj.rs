@@ -1,14 +1,16 @@
 //! Reading OBJ.
 
+use std::borrow::Cow;
 use std::io::BufRead;
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::Vec3;
 use strandline_base::whole_lines;
 
-use crate::Mesh;
 use crate::parsing::{Refusal, unit_normal};
 use crate::part_names::Names;
+use crate::{Mesh, obj_looks};
 
 /// The part that has a name, from the bytes of a file.
 pub(crate) fn parse_part(bytes: &[u8], names: &mut Names) -> Result<Mesh, Refusal> {
@@ -44,12 +46,25 @@ fn only(bytes: &[u8], names: &mut Names) -> Vec<u8> {
     kept
 }
 
-/// Reads a mesh from the bytes of a file, in its units; vertices without a normal get a zero one.
-pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Refusal> {
+/// Reads a mesh from the bytes of a file, in its units, with the materials that lie in its folder; vertices without a
+/// normal get a zero one. Adds notes on looks that are not read.
+pub(crate) fn parse_with_looks(
+    bytes: &[u8],
+    folder: Option<&Path>,
+    notes: &mut Vec<String>,
+) -> Result<Mesh, Refusal> {
     let text = whole_lines(bytes);
+    let mut mesh = parse(&text)?;
+    mesh.materials = obj_looks::looks(&text, folder, &mesh, notes).map(Arc::new);
+    Ok(mesh)
+}
+
+/// Reads the shape of a mesh from a text whose lines are whole, as [`parse_with_looks`].
+fn parse(text: &[u8]) -> Result<Mesh, Refusal> {
+    let text = without_colors(text);
     let mut bytes = &*text;
     let refused = |found: String| (found, "a Wavefront OBJ file with vertices (v) and faces (f)");
-    check_faces(bytes).map_err(refused)?;
+    check_faces(&text).map_err(refused)?;
     let options = tobj::LoadOptions {
         triangulate: true,
         ignore_points: true,
@@ -81,6 +96,29 @@ pub(crate) fn order(bytes: &[u8]) -> Result<(Vec<u32>, usize), Refusal> {
         }
     }
     Ok((parse(&numbered)?.positions.iter().map(|place| place.x as u32).collect(), count))
+}
+
+/// The text with three numbers for each vertex: colours behind them, which may be those of some vertices alone, are not
+/// the parser's.
+fn without_colors(text: &[u8]) -> Cow<'_, [u8]> {
+    fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+        line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
+    }
+    let has_more = |line: &[u8]| words(line).next() == Some(b"v") && words(line).nth(4).is_some();
+    let lines = || text.split_inclusive(|byte| *byte == b'\n');
+    if !lines().any(has_more) {
+        return Cow::Borrowed(text);
+    }
+    let mut plain = Vec::with_capacity(text.len());
+    for line in lines() {
+        if has_more(line) {
+            words(line).take(4).for_each(|word| plain.extend(word.iter().chain(b" ")));
+            plain.push(b'\n');
+        } else {
+            plain.extend_from_slice(line);
+        }
+    }
+    Cow::Owned(plain)
 }
 
 fn append(mesh: &mut Mesh, part: &tobj::Mesh) {

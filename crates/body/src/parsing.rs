@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::Vec3;
-use strandline_base::{memory, read_plain};
+use strandline_base::{math, memory, read_plain};
 
 use crate::BodyError;
 
@@ -33,4 +33,14 @@ pub(crate) fn unit_normal(normal: Vec3) -> Vec3 {
     // The square of a very short or very long normal underflows or overflows.
     let largest = normal.abs().max_element();
     if normal.is_finite() && largest > 0.0 { (normal / largest).normalize_or_zero() } else { Vec3::ZERO }
+}
+
+/// Linear light of a colour of a file, sRGB from 0 to 1 \[IEC 61966-2-1\]; what is no number is white.
+pub(crate) fn linear_light(color: Vec3) -> Vec3 {
+    let channel = |part: f32| match part.clamp(0.0, 1.0) {
+        part if part.is_nan() => 1.0,
+        part if part <= 0.040_45 => part / 12.92,
+        part => math::powf((part + 0.055) / 1.055, 2.4),
+    };
+    Vec3::from(color.to_array().map(channel))
 }

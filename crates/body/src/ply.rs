@@ -1,19 +1,21 @@
 //! Reading meshes of `.ply` files: head scans and reconstructions.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 use strandline_base::ply::{self, Table};
 
-use crate::Mesh;
-use crate::parsing::{Refusal, unit_normal};
+use crate::parsing::{Refusal, linear_light, unit_normal};
+use crate::{Materials, Mesh};
 
 /// Names of the list of a face's corners: both are common.
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 /// Reads a mesh from the bytes of a file, in its units; polygons become fans of triangles, vertices without a normal
 /// get a zero one.
-pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Refusal> {
+pub(crate) fn parse(bytes: &[u8], notes: &mut Vec<String>) -> Result<Mesh, Refusal> {
     const EXPECTED: &str = "a PLY file with vertices (x, y, z) and faces (vertex_indices)";
-    let of_vertices = ["x", "y", "z", "nx", "ny", "nz"];
+    let of_vertices = ["x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"];
     let asked: [(&str, &[&str]); 2] = [("vertex", &of_vertices), ("face", &CORNERS)];
     let file = ply::read(bytes, asked)
         .map_err(|mismatch| (format!("{}, expected {},", mismatch.found, mismatch.expected), EXPECTED))?;
@@ -29,6 +31,12 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Refusal> {
         return Err((format!("{} points and no faces", mesh.positions.len()), EXPECTED));
     }
     mesh.normals.resize(mesh.positions.len(), Vec3::ZERO);
+    if let Some(colors) = vertices.triples(["red", "green", "blue"]) {
+        let most = if vertices.is_byte("red") { 255.0 } else { 1.0 };
+        let colors = colors.into_iter().map(|color| linear_light(Vec3::from_array(color) / most).extend(1.0));
+        let materials = Materials::of_vertices(colors.collect(), mesh.triangles.len());
+        mesh.materials = materials.drawn(notes).map(Arc::new);
+    }
     Ok(mesh)
 }
 

@@ -1,37 +1,20 @@
 //! Sources of the bytes of a buffer: a file beside the glTF, or text within it.
 
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
-/// The file that a relative address names, below a folder also where links lead.
+use crate::beside;
+
+/// The file that a relative address names, below a folder: `%20` and the like become bytes again.
 ///
-/// `None` for other addresses, for files that are not there, and for links that lead out of the folder.
+/// `None` for other addresses, for what is one only after that, and for links that lead out of the folder.
 pub(super) fn file_below(folder: &Path, uri: &str) -> Option<PathBuf> {
-    // The folder of a bare name is that of the process.
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let path = folder.join(file_name(uri)?);
-    match path.canonicalize() {
-        Ok(real) => real.starts_with(folder.canonicalize().ok()?).then_some(path),
-        // A file that is not there is refused where it is read.
-        Err(_) => Some(path),
-    }
-}
-
-/// A relative address as a path below the file's folder: `%20` and the like become bytes again.
-///
-/// `None` for other addresses, and for what is one only after that: a path from the root, a way up, a drive, a share.
-fn file_name(uri: &str) -> Option<String> {
     let mut parts = uri.split('%');
     let mut name = parts.next()?.as_bytes().to_vec();
     for part in parts {
         name.push(u8::from_str_radix(part.get(..2)?, 16).ok()?);
         name.extend_from_slice(&part.as_bytes()[2..]);
     }
-    String::from_utf8(name).ok().filter(|name| {
-        // A separator of folders or drives on one system counts on all: a file means the same everywhere.
-        let is_below =
-            |name: &str| Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
-        !name.is_empty() && !name.contains(['\0', ':', '\\']) && is_below(name)
-    })
+    beside::file_below(folder, &String::from_utf8(name).ok()?)
 }
 
 /// The bytes of text in base 64 \[RFC4648 §4\], with or without `=` at its end.

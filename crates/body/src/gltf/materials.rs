@@ -15,8 +15,6 @@ use crate::{Material, Materials, Mesh, Wrap};
 
 /// Kinds of numbers of colours and texture coordinates, those of KHR_mesh_quantization among them.
 const KINDS: [DataType; 5] = [DataType::F32, DataType::U8, DataType::U16, DataType::I8, DataType::I16];
-/// Most triangles of a body that is drawn with its own colours: their numbers fit the buffers of every GPU.
-const MOST_TRIANGLES: usize = 1 << 20;
 /// Alpha at which blended materials are cut, and the default of masked ones. // glTF 2.0 §3.9.4
 const HALF: f32 = 0.5;
 
@@ -143,13 +141,7 @@ impl<'a> Painter<'a> {
             let names = self.blended.join(", ");
             notes.push(format!("nothing is blended: cut where half transparent are the materials {names}"));
         }
-        if mesh.triangles.len() > MOST_TRIANGLES {
-            notes.push(format!(
-                "a body of more than {MOST_TRIANGLES} triangles is drawn without its own colours"
-            ));
-            return None;
-        }
-        Some(kept)
+        kept.drawn(notes)
     }
 
     /// An attribute of the vertices of a part.

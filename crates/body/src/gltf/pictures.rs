@@ -10,16 +10,8 @@ use strandline_base::read_plain;
 
 use super::address::{file_below, from_base64};
 use super::buffers::Buffers;
-use crate::{Srgb, Texture};
-
-/// Longest side of a texture that is kept \[texel\]; larger ones are halved until they fit.
-const MOST_KEPT_SIDE: u32 = 2048;
-/// Most texels of all textures of a body: with smaller copies for the distance they fit the buffers of every GPU.
-const MOST_KEPT: u64 = 20 << 20;
-/// Most texels of all pictures that are read of one file.
-const MOST_READ: u64 = 1 << 28;
-/// Largest file of a picture that is read \[byte\].
-const FILE_LIMIT: u64 = 64 << 20;
+use crate::Texture;
+use crate::textures::{FILE_LIMIT, Textures};
 
 /// Reads pictures, each once.
 pub(super) struct Pictures<'a> {
@@ -31,9 +23,7 @@ pub(super) struct Pictures<'a> {
     pub images: &'a [Value],
     known: BTreeMap<usize, Option<usize>>,
     means: BTreeMap<usize, Option<[f32; 4]>>,
-    textures: Vec<Texture>,
-    srgb: Srgb,
-    left: u64,
+    textures: Textures,
 }
 
 impl<'a> Pictures<'a> {
@@ -50,9 +40,7 @@ impl<'a> Pictures<'a> {
             images,
             known: BTreeMap::new(),
             means: BTreeMap::new(),
-            textures: Vec::new(),
-            srgb: Srgb::default(),
-            left: MOST_READ,
+            textures: Textures::default(),
         }
     }
 
@@ -61,17 +49,8 @@ impl<'a> Pictures<'a> {
         if let Some(known) = self.known.get(&image) {
             return *known;
         }
-        let read = self.read(image, notes).map(|mut texture| {
-            let full = [texture.width, texture.height];
-            while texture.width.max(texture.height) > MOST_KEPT_SIDE {
-                texture = texture.halved(&self.srgb);
-            }
-            if [texture.width, texture.height] != full {
-                notes.push(self.scaled_down(image, full, &texture));
-            }
-            self.textures.push(texture);
-            self.textures.len() - 1
-        });
+        let read = self.read(image, notes);
+        let read = read.map(|texture| self.textures.keep(self.name(image), texture, notes));
         self.known.insert(image, read);
         read
     }
@@ -86,41 +65,14 @@ impl<'a> Pictures<'a> {
         means
     }
 
-    /// All textures, of which the largest are halved until they are few enough texels.
-    pub fn finish(mut self, notes: &mut Vec<String>) -> Vec<Arc<Texture>> {
-        let size = |texture: &Texture| texture.texels.len() as u64;
-        while self.textures.iter().map(size).sum::<u64>() > MOST_KEPT {
-            let largest = (0..self.textures.len()).max_by_key(|at| size(&self.textures[*at]));
-            let Some(largest) = largest else { break };
-            let full = [self.textures[largest].width, self.textures[largest].height];
-            self.textures[largest] = self.textures[largest].halved(&self.srgb);
-            let image = self.known.iter().find(|(_, texture)| **texture == Some(largest));
-            let image = image.map_or(0, |(image, _)| *image);
-            notes.push(self.scaled_down(image, full, &self.textures[largest]));
-        }
-        self.textures.into_iter().map(Arc::new).collect()
-    }
-
-    fn scaled_down(&self, image: usize, [width, height]: [u32; 2], texture: &Texture) -> String {
-        let (name, to) = (self.name(image), [texture.width, texture.height]);
-        format!("the picture {name} of {width} x {height} texels is scaled down to {} x {}", to[0], to[1])
+    /// All textures; adds notes for those that are halved.
+    pub fn finish(self, notes: &mut Vec<String>) -> Vec<Arc<Texture>> {
+        self.textures.finish(notes)
     }
 
     fn read(&mut self, image: usize, notes: &mut Vec<String>) -> Option<Texture> {
-        let read = self.bytes(image).and_then(|bytes| Texture::decode(&bytes, self.left));
-        match read {
-            Ok(texture) => {
-                self.left -= texture.texels.len() as u64;
-                Some(texture)
-            }
-            Err(problem) => {
-                let name = self.name(image);
-                notes.push(format!(
-                    "the picture {name} is not read: {problem}; its parts are drawn without it"
-                ));
-                None
-            }
-        }
+        let (name, bytes) = (self.name(image), self.bytes(image));
+        self.textures.read(&name, bytes, notes)
     }
 
     fn name(&self, image: usize) -> String {

@@ -8,6 +8,7 @@ mod files;
 mod gltf_files;
 mod mesh_files;
 mod neck;
+mod obj_looks;
 mod painted;
 mod painted_file;
 mod posed_skin;
