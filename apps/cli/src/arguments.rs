@@ -44,7 +44,7 @@ pub enum Command {
     Groom(GroomOptions),
     /// Read a groom and write it in another format.
     Convert(ConvertOptions),
-    /// Print the contents of a groom file, or of a glTF body: its clips.
+    /// Print the contents of a groom file, or of a body: its materials and clips.
     Info(InfoOptions),
     /// Print a scene as TOML, every key spelled out: a start for your own.
     Scene(SceneOptions),
@@ -268,7 +268,7 @@ pub struct ConvertOptions {
 #[derive(Args, Debug)]
 #[command(after_help = formats())]
 pub struct InfoOptions {
-    /// The groom to read, or a .gltf, .glb or .vrm body.
+    /// The groom to read, or a body: .gltf, .glb, .vrm or .stl, .obj or .ply with faces and without strands.
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     #[command(flatten)]

@@ -42,10 +42,19 @@ const MOST_GROUPS: usize = 20;
 
 /// Prints the contents of a file.
 pub fn info(options: &InfoOptions) -> anyhow::Result<()> {
-    if MeshFormat::of(&options.file).is_ok_and(MeshFormat::defines_space) {
-        return body_info(options);
+    let mesh_format = MeshFormat::of(&options.file).ok();
+    if let Some(format @ (MeshFormat::Gltf | MeshFormat::Stl)) = mesh_format {
+        return body_info(options, format, Mesh::load_noted(&options.file, 1.0)?);
     }
-    let report = format::load(&options.file, &options.reading.options())?.report;
+    let report = match (format::load(&options.file, &options.reading.options()), mesh_format) {
+        (Ok(groom), _) => groom.report,
+        // The formats of meshes that hold strands too.
+        (Err(error), Some(format)) => match Mesh::load_noted(&options.file, 1.0) {
+            Ok(body) => return body_info(options, format, body),
+            Err(_) => return Err(error.into()),
+        },
+        (Err(error), None) => return Err(error.into()),
+    };
     if options.json {
         output::program(&format!("{}\n", serde_json::to_string(&report)?));
         return Ok(());
@@ -78,10 +87,14 @@ pub fn info(options: &InfoOptions) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Prints the contents of a glTF body: its size, its materials and its clips.
-fn body_info(options: &InfoOptions) -> anyhow::Result<()> {
-    let (mesh, notes) = Mesh::load_noted(&options.file, 1.0)?;
-    let clips = Mesh::clip_names(&options.file)?;
+/// Prints the contents of a body: its size, its materials and its clips.
+fn body_info(
+    options: &InfoOptions,
+    format: MeshFormat,
+    (mesh, notes): (Mesh, Vec<String>),
+) -> anyhow::Result<()> {
+    let has_clips = format == MeshFormat::Gltf;
+    let clips = if has_clips { Mesh::clip_names(&options.file)? } else { Vec::new() };
     let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
     let materials = mesh.materials.as_deref().cloned().unwrap_or_default();
     let size = |material: &Material| {
@@ -110,7 +123,13 @@ fn body_info(options: &InfoOptions) -> anyhow::Result<()> {
         output::program(&format!("{object}\n"));
         return Ok(());
     }
-    print_line!("{}: glTF", options.file.display());
+    let name = match format {
+        MeshFormat::Gltf => "glTF",
+        MeshFormat::Obj => ".obj mesh",
+        MeshFormat::Ply => ".ply mesh",
+        MeshFormat::Stl => ".stl mesh",
+    };
+    print_line!("{}: {name}", options.file.display());
     print_line!("vertices  {vertices}");
     print_line!("triangles {triangles}");
     for material in &materials.list {

@@ -207,3 +207,17 @@ fn shells_and_man_know_every_command_and_option() {
     assert!(read("strandline.1").contains("convert"));
     assert!(read("strandline-render.1").contains("turntable"));
 }
+
+#[test]
+fn a_mesh_is_told_from_strands_by_its_contents() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("body.mtl"), "newmtl skin\nKd 0.5 0.25 0.125\n").unwrap();
+    let mesh = "mtllib body.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl skin\nf 1 2 3\n";
+    std::fs::write(at.join("body.obj"), mesh).unwrap();
+    let said = works(at, &["info", "body.obj"]);
+    assert!(said.contains(".obj mesh") && said.contains("material  skin: color 0.50 0.25 0.12"), "{said}");
+    // Neither strands nor faces.
+    std::fs::write(at.join("points.obj"), "v 0 0 0\nv 1 0 0\n").unwrap();
+    fails(at, &["info", "points.obj"], 1, &["strands as lines", "points.obj"]);
+}
