@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::parsing::Refusal;
 use crate::part_names::Names;
-use crate::{BodyError, Mesh, gltf, obj, ply, stl};
+use crate::{BodyError, Mesh, gltf, obj, obj_looks, ply, stl};
 
 /// A format of mesh files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,7 +77,7 @@ impl MeshFormat {
         match self {
             Self::Obj => match names {
                 Some(names) => obj::parse_part(bytes, names),
-                None => obj::parse_with_looks(bytes, folder, notes),
+                None => obj_looks::parse(bytes, folder, notes),
             },
             Self::Gltf => gltf::parse(bytes, folder, names, notes),
             // These formats name no parts: no name is any of theirs.

@@ -3,14 +3,13 @@
 use std::borrow::Cow;
 use std::io::BufRead;
 use std::path::Path;
-use std::sync::Arc;
 
 use glam::Vec3;
 use strandline_base::whole_lines;
 
+use crate::Mesh;
 use crate::parsing::{Refusal, unit_normal};
 use crate::part_names::Names;
-use crate::{Mesh, obj_looks};
 
 /// The part that has a name, from the bytes of a file.
 pub(crate) fn parse_part(bytes: &[u8], names: &mut Names) -> Result<Mesh, Refusal> {
@@ -46,21 +45,8 @@ fn only(bytes: &[u8], names: &mut Names) -> Vec<u8> {
     kept
 }
 
-/// Reads a mesh from the bytes of a file, in its units, with the materials that lie in its folder; vertices without a
-/// normal get a zero one. Adds notes on looks that are not read.
-pub(crate) fn parse_with_looks(
-    bytes: &[u8],
-    folder: Option<&Path>,
-    notes: &mut Vec<String>,
-) -> Result<Mesh, Refusal> {
-    let text = whole_lines(bytes);
-    let mut mesh = parse(&text)?;
-    mesh.materials = obj_looks::looks(&text, folder, &mesh, notes).map(Arc::new);
-    Ok(mesh)
-}
-
-/// Reads the shape of a mesh from a text whose lines are whole, as [`parse_with_looks`].
-fn parse(text: &[u8]) -> Result<Mesh, Refusal> {
+/// Reads the shape of a mesh from a text whose lines are whole, in its units; vertices without a normal get a zero one.
+pub(crate) fn parse(text: &[u8]) -> Result<Mesh, Refusal> {
     let text = without_colors(text);
     let mut bytes = &*text;
     let refused = |found: String| (found, "a Wavefront OBJ file with vertices (v) and faces (f)");

@@ -4,12 +4,13 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::{Vec2, Vec3, Vec4};
-use strandline_base::read_plain;
+use strandline_base::{read_plain, whole_lines};
 
 use crate::beside::file_below;
-use crate::parsing::linear_light;
+use crate::parsing::{Refusal, linear_light};
 use crate::textures::{FILE_LIMIT, Textures};
 use crate::{Material, Materials, Mesh, Wrap, obj};
 
@@ -19,13 +20,17 @@ const MOST_LIBRARIES: usize = 64;
 /// Alpha below which nothing is drawn: nothing is blended.
 const HALF: f32 = 0.5;
 
+/// Reads a mesh from the bytes of a file, in its units, with the materials that lie in its folder; vertices without a
+/// normal get a zero one. Adds notes on looks that are not read.
+pub(crate) fn parse(bytes: &[u8], folder: Option<&Path>, notes: &mut Vec<String>) -> Result<Mesh, Refusal> {
+    let text = whole_lines(bytes);
+    let mut mesh = obj::parse(&text)?;
+    mesh.materials = looks(&text, folder, &mesh, notes).map(Arc::new);
+    Ok(mesh)
+}
+
 /// The looks of the mesh of a file whose lines are whole; `None` where nothing has one. Adds notes.
-pub(crate) fn looks(
-    text: &[u8],
-    folder: Option<&Path>,
-    mesh: &Mesh,
-    notes: &mut Vec<String>,
-) -> Option<Materials> {
+fn looks(text: &[u8], folder: Option<&Path>, mesh: &Mesh, notes: &mut Vec<String>) -> Option<Materials> {
     let named = Library::read(text, folder, notes);
     let colors = colors(text, mesh);
     let materials = match (named, colors) {
