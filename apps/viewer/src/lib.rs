@@ -5,6 +5,7 @@
 
 mod app;
 mod asking;
+mod brushing;
 mod compare;
 mod compared;
 mod controls;
