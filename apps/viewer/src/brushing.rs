@@ -9,7 +9,7 @@ use strandline::{Prepared, Touched, live::Command};
 use crate::{
     App, Tool,
     controls::{button, slide, tick},
-    viewport::{points_of, ray},
+    sight::{points_of, ray},
 };
 
 impl App {

@@ -23,6 +23,7 @@ mod recent;
 mod rescue;
 mod saves;
 mod saving;
+mod sight;
 mod status_bar;
 mod timeline_bar;
 mod undoing;

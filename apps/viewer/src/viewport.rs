@@ -1,12 +1,17 @@
 //! The picture, and its mouse and keys.
 
-use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2, Rect};
+use eframe::egui::{self, Key, Modifiers, PointerButton, Rect};
 use glam::Vec2;
-use strandline::{
-    Camera, Change, PictureSettings, Ray, live::Command, scene::MotionSection, settings::Group,
-};
+use strandline::{Camera, Change, PictureSettings, live::Command, scene::MotionSection, settings::Group};
 
-use crate::{App, Tool, brushing, compare, controls::button, files::Wanted, messages, wind};
+use crate::{
+    App, Tool, brushing, compare,
+    controls::button,
+    files::Wanted,
+    messages,
+    sight::{points_of, ray},
+    wind,
+};
 
 /// Turn of the view or the head for a point that the mouse moves \[radians\].
 const ORBIT: f32 = 0.008;
@@ -228,18 +233,6 @@ fn grab(app: &mut App, ui: &egui::Ui, response: &egui::Response) {
         let radius = points_of(app, response.rect, app.radius);
         ui.painter().circle_stroke(pointer, radius, egui::Stroke::new(1.5, colour));
     }
-}
-
-/// A length \[m\] as far away as the target, in the picture \[point\].
-pub fn points_of(app: &App, room: Rect, length: f32) -> f32 {
-    let distance = app.camera.position.distance(app.camera.target);
-    length * app.camera.focal() / distance * 0.5 * room.height()
-}
-
-/// The line of sight under the mouse.
-pub fn ray(app: &App, room: Rect, pointer: Pos2) -> Ray {
-    let halves = (pointer - room.center()) / (0.5 * room.height().max(1.0));
-    Ray::new(&app.camera, Vec2::new(halves.x, -halves.y))
 }
 
 /// Distance \[point\] that the mouse was dragged since the last pass, or since the press: movement before the
