@@ -135,6 +135,37 @@ class Ties(TypedDict, total=False):
     """Distance within which strands are held. Allowed: 0.001 to 1 m."""
 
 
+class Strokes(TypedDict, total=False):
+    """A stroke of a brush over hair at rest."""
+
+    tool: str
+    """The tool. Allowed: one of comb, cut, lengthen, clump, curl."""
+
+    position: Sequence[float]
+    """Middle of the brush, near the skin, head space. Allowed: 3 numbers of -10,000 to 10,000 m."""
+
+    radius: float
+    """Distance from the middle within which strands have their roots. Allowed: 1e-4 to 100 m."""
+
+    strength: float
+    """Share of the whole effect; toward the rim of the brush it falls to 0, but for `cut`. Allowed: 0 to 1."""
+
+    motion: Sequence[float]
+    """Way of the tips under `comb`, head space. Allowed: 3 numbers of -10 to 10 m."""
+
+    length: float
+    """Length that `cut` leaves, or that `lengthen` adds. Allowed: 0.001 to 10 m."""
+
+    curl: float
+    """Radius of the turns of `curl`. Allowed: 0 to 0.5 m."""
+
+    pitch: float
+    """Length of hair in a turn of `curl`; a turn has six points of a strand at least. Allowed: 0.001 to 10 m."""
+
+    symmetric: bool
+    """Repeats the stroke on the other side of the head (x to -x). Allowed: true or false."""
+
+
 class Style(TypedDict, total=False):
     """Settings of a grown style. The default of every number but the first two is that of the style."""
 
@@ -1352,6 +1383,10 @@ class SceneSections(TypedDict, total=False):
     ties: Sequence[Ties]
     """Bands about hair; none named means those of the knots that are found, see `groom.find_ties`. Allowed: 0 to
     64."""
+
+    strokes: Sequence[Strokes]
+    """Strokes of a brush over the hair at rest, one after the other: comb, cut, lengthen, clump, curl. Allowed: 0 to
+    4096."""
 
     style: Style
     """Settings of a grown style. The default of every number but the first two is that of the style."""

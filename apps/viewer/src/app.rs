@@ -10,7 +10,7 @@ use strandline::{
     format::{Format, endings},
     live::{Command, Shown},
     mesh::MeshFormat,
-    settings::SettingError,
+    settings::{SettingError, Stroke},
 };
 
 use crate::{compared, export, files, found, messages, playback, recent, rescue, saves};
@@ -40,6 +40,11 @@ pub struct App {
     /// True while the mouse holds hair, and the radius \[m\] of the hand.
     pub(crate) grabs: bool,
     pub(crate) radius: f32,
+    /// The brush in hand, and the place where its stroke began.
+    pub(crate) stroke: Stroke,
+    pub(crate) brushed_from: Option<egui::Pos2>,
+    /// True while a scene loads that is seen from where the last one was.
+    pub(crate) keeps_view: bool,
     /// The scene that is on its way, and the number of its command.
     pub(crate) pending: Option<(u64, Box<Scene>)>,
     pub(crate) error: Option<String>,
@@ -98,6 +103,8 @@ pub enum Tool {
     Grab,
     /// Turns the head.
     Turn,
+    /// Changes hair at rest.
+    Brush,
 }
 
 impl App {
@@ -140,6 +147,9 @@ impl App {
             dragged_to: None,
             grabs: false,
             radius: Self::RADIUS,
+            stroke: Stroke::default(),
+            brushed_from: None,
+            keeps_view: false,
             pending: Some((1, Box::new(scene))),
             error: None,
             notes: messages::Notes::default(),
@@ -247,7 +257,7 @@ impl App {
     }
 
     /// True while a scene is loading.
-    pub(crate) fn is_loading(&self) -> bool {
+    pub fn is_loading(&self) -> bool {
         self.pending.is_some()
     }
 

@@ -5,6 +5,7 @@
 
 mod app;
 mod asking;
+mod brushing;
 mod compare;
 mod compared;
 mod controls;
@@ -22,6 +23,7 @@ mod recent;
 mod rescue;
 mod saves;
 mod saving;
+mod sight;
 mod status_bar;
 mod timeline_bar;
 mod undoing;

@@ -37,11 +37,22 @@ impl Saves {
         path: PathBuf,
         done: impl FnOnce() + Send + 'static,
     ) -> std::io::Result<()> {
+        self.run(move || picture.save(&path).map(|()| path).map_err(|error| error.to_string()), done)
+    }
+
+    /// Runs a save on a thread of its own.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub fn run(
+        &mut self,
+        save: impl FnOnce() -> Saved + Send + 'static,
+        done: impl FnOnce() + Send + 'static,
+    ) -> std::io::Result<()> {
         let finished = self.finished.0.clone();
         let write = move || {
-            let saved = picture.save(&path).map(|()| path).map_err(|error| error.to_string());
             // The window may be gone.
-            let _ = finished.send(saved);
+            let _ = finished.send(save());
             done();
         };
         self.threads.push(std::thread::Builder::new().name("saving".to_owned()).spawn(write)?);

@@ -26,8 +26,11 @@ pub fn show(app: &App, ui: &mut egui::Ui) {
             ui.label(counted(shown.grabbed, "strand in hand", "strands in hand"));
         }
         if shown.stiffening.strands > 0 {
-            ui.label(shown.stiffening.to_string())
-                .on_hover_text("their shape would not be stable; `rest = \"unstressed\"` lets them sag");
+            let strands = counted(shown.stiffening.strands, "stiffened strand", "stiffened strands");
+            ui.label(strands).on_hover_text(format!(
+                "{}: their shape would not be stable; `rest = \"unstressed\"` lets them sag",
+                shown.stiffening
+            ));
         }
         if let Some(frames) = shown.recorded {
             ui.colored_label(
@@ -36,19 +39,25 @@ pub fn show(app: &App, ui: &mut egui::Ui) {
             );
         }
         let drawing: f64 = shown.drawing.seconds.iter().map(|(_, seconds)| seconds).sum();
-        ui.label(format!("{} segments in {:.1} ms", grouped(shown.drawing.segments), 1e3 * drawing))
-            .on_hover_text(stages(&shown.drawing.seconds));
+        let tip = format!("{} segments\n{}", grouped(shown.drawing.segments), stages(&shown.drawing.seconds));
+        ui.label(format!("picture {}", duration(drawing))).on_hover_text(tip);
         if let Some(step) = &shown.step {
             let seconds: f64 = step.seconds.iter().map(|(_, seconds)| seconds).sum();
-            ui.label(format!("step {:.2} ms", 1e3 * seconds)).on_hover_text(stages(&step.seconds));
-            ui.label(format!("{} iterations", step.pressure.iterations))
-                .on_hover_text("of the pressure solve");
-            ui.label(format!("stretch {:.2} %", 100.0 * step.stretch_max))
-                .on_hover_text("the largest, over rest");
-            ui.label(format!("penetration {:.1} mm", 1e3 * step.penetration_max))
-                .on_hover_text("deepest point inside a solid");
+            let tip = format!(
+                "{}\n{} iterations of the pressure solve\nlargest stretch {:.2} %\ndeepest point inside a solid {:.1} mm",
+                stages(&step.seconds),
+                step.pressure.iterations,
+                100.0 * step.stretch_max,
+                1e3 * step.penetration_max
+            );
+            ui.label(format!("step {}", duration(seconds))).on_hover_text(tip);
         }
     });
+}
+
+/// A duration in the unit that leaves few digits.
+fn duration(seconds: f64) -> String {
+    if seconds < 1.0 { format!("{:.1} ms", 1e3 * seconds) } else { format!("{seconds:.1} s") }
 }
 
 /// A number with its thousands set apart.
@@ -62,6 +71,11 @@ fn grouped(number: usize) -> String {
 fn stages(seconds: &[(&'static str, f64)]) -> String {
     let line = |(name, seconds): &(&str, f64)| format!("{name}: {:.2} ms", 1e3 * seconds);
     seconds.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn durations_have_few_digits() {
+    assert_eq!([0.0044, 0.5, 12.4737].map(duration), ["4.4 ms", "500.0 ms", "12.5 s"]);
 }
 
 #[test]

@@ -1,12 +1,17 @@
 //! The picture, and its mouse and keys.
 
-use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2, Rect};
+use eframe::egui::{self, Key, Modifiers, PointerButton, Rect};
 use glam::Vec2;
-use strandline::{
-    Camera, Change, PictureSettings, Ray, live::Command, scene::MotionSection, settings::Group,
-};
+use strandline::{Camera, Change, PictureSettings, live::Command, scene::MotionSection, settings::Group};
 
-use crate::{App, Tool, compare, controls::button, files::Wanted, messages, wind};
+use crate::{
+    App, Tool, brushing, compare,
+    controls::button,
+    files::Wanted,
+    messages,
+    sight::{points_of, ray},
+    wind,
+};
 
 /// Turn of the view or the head for a point that the mouse moves \[radians\].
 const ORBIT: f32 = 0.008;
@@ -197,6 +202,12 @@ fn mouse(app: &mut App, ui: &egui::Ui, response: &egui::Response) {
     }
     if app.grabs {
         grab(app, ui, response);
+    } else if tool == Tool::Brush {
+        brushing::mouse(app, ui, response);
+        let aside = [PointerButton::Secondary, PointerButton::Middle];
+        if aside.iter().any(|button| response.dragged_by(*button)) {
+            drag(app, ui, response, tool);
+        }
     } else {
         drag(app, ui, response, tool);
     }
@@ -219,20 +230,9 @@ fn grab(app: &mut App, ui: &egui::Ui, response: &egui::Response) {
     if let Some(pointer) = response.interact_pointer_pos() {
         let holds = app.shown.as_ref().is_some_and(|shown| shown.grabbed > 0);
         let colour = if holds { egui::Color32::WHITE } else { egui::Color32::GRAY };
-        ui.painter().circle_stroke(pointer, hand_points(app, response.rect), egui::Stroke::new(1.5, colour));
+        let radius = points_of(app, response.rect, app.radius);
+        ui.painter().circle_stroke(pointer, radius, egui::Stroke::new(1.5, colour));
     }
-}
-
-/// Radius of the hand in the picture \[point\].
-fn hand_points(app: &App, room: Rect) -> f32 {
-    let distance = app.camera.position.distance(app.camera.target);
-    app.radius * app.camera.focal() / distance * 0.5 * room.height()
-}
-
-/// The line of sight under the mouse.
-fn ray(app: &App, room: Rect, pointer: Pos2) -> Ray {
-    let halves = (pointer - room.center()) / (0.5 * room.height().max(1.0));
-    Ray::new(&app.camera, Vec2::new(halves.x, -halves.y))
 }
 
 /// Distance \[point\] that the mouse was dragged since the last pass, or since the press: movement before the

@@ -33,7 +33,7 @@ impl App {
                 LiveEvent::NotLoaded(number, kind, error) => {
                     // The previous scene still plays.
                     self.pending.take_if(|(pending, _)| *pending == number);
-                    self.restoring = false;
+                    (self.restoring, self.keeps_view) = (false, false);
                     self.error = Some(with_remedy(kind, error));
                     if self.shown.is_none() {
                         self.give_up_pictures();
@@ -47,6 +47,7 @@ impl App {
                 LiveEvent::Saved(path) => self.note(format!("wrote {}", path.display())),
                 LiveEvent::Recorded if self.finishing > 0 => self.finishing -= 1,
                 LiveEvent::Recorded => self.recording = false,
+                LiveEvent::Touched(touched) => self.brush(touched),
                 LiveEvent::Exported(written) => self.tell_written(&written),
             }
         }
@@ -72,7 +73,11 @@ impl App {
         }
         self.loads_first = false;
         self.base = self.scene.clone();
+        let before = self.camera;
         (self.camera, self.home, self.grabs) = (camera, camera, false);
+        if std::mem::take(&mut self.keeps_view) && !self.follows {
+            viewport::look(self, before);
+        }
         self.notes.clear();
         self.live.send(Command::Play(self.playing));
     }

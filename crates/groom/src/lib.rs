@@ -7,6 +7,7 @@
 mod arcs;
 mod attributes;
 mod binding;
+mod brush;
 mod choice;
 mod error;
 mod groom;
@@ -23,6 +24,7 @@ mod unlike;
 pub mod format;
 
 pub use binding::{Binding, Frames, Influence, MOST_INFLUENCES, Surface};
+pub use brush::{Stroke, Tool};
 pub use error::GroomError;
 pub use groom::{Groom, Widths};
 pub use guides::Guides;

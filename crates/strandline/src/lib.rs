@@ -42,7 +42,7 @@ pub mod scene;
 pub mod settings {
     pub use strandline_base::{Group, Key, Kind, Row, SettingError, Table, Value, Word};
 
-    pub use crate::groom::StyleSettings;
+    pub use crate::groom::{Stroke, StyleSettings, Tool};
     pub use crate::sim::{
         Drag, Preconditioner, StrandMethod, StrandSettings, VolumeMethod, VolumeSettings, constrain, rods,
     };
@@ -106,7 +106,7 @@ pub use player::Player;
 pub use prepare::{Prepared, Sources};
 pub use render::{Camera, Light, Look, Picture, PictureSettings};
 pub use scene::{Devices, HeadMotion, Scene};
-pub use session::{Change, Event, Ray};
+pub use session::{Change, Event, Ray, Touched};
 pub use sim::{Backend, Drift, Settings, SimError, StepReport, Stiffening};
 
 // Names of this crate's own modules.

@@ -12,17 +12,23 @@ use eframe::egui::{self, Ui};
 use strandline::{Change, live::Command};
 
 use crate::{
-    App, compare,
+    App, brushing, compare,
     controls::{button, section},
     finding, looks,
     undoing::{self, Part},
 };
 
+/// Room of a number and a name beside a slider \[point\].
+const BESIDE_SLIDERS: f32 = 190.0;
+
 pub fn show(app: &mut App, ui: &mut Ui) {
     egui::ScrollArea::vertical().show(ui, |ui| {
+        // A wider panel gives its room to the sliders.
+        ui.spacing_mut().slider_width = (ui.available_width() - BESIDE_SLIDERS).max(100.0);
         play(app, ui);
         finding::show(app, ui);
         section(ui, "Scene", true, |ui| scene::show(app, ui));
+        section(ui, "Brushes", false, |ui| brushing::panel(app, ui));
         panel(app, ui, "Motion", true, Part::Motion, motion::show);
         panel(app, ui, "Simulation", false, Part::Simulation, simulation::show);
         panel(app, ui, "Look", true, Part::Look, look::show);

@@ -1,5 +1,6 @@
 //! The window as a person uses it, without a display: its contents are laid out, found by their labels and fed events.
 
+mod brushes;
 mod loading;
 mod panels;
 mod person;

@@ -104,6 +104,9 @@ impl History {
 }
 
 fn name(before: &Scene, after: &Scene) -> String {
+    if let Some(stroke) = after.strokes.get(before.strokes.len()) {
+        return stroke.tool.name().to_owned();
+    }
     let found = difference(before, after);
     match &found[..] {
         [] => "a value".to_owned(),

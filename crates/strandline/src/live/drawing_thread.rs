@@ -136,6 +136,10 @@ impl DrawingThread {
             Command::Record(folder) => self.record(playing, &folder),
             Command::StopRecording => playing.finishing.extend(playing.recorder.take().map(Recorder::finish)),
             Command::Change(change) => self.change(playing, change),
+            Command::Touch(rays) => {
+                let touched = playing.scene.as_ref().and_then(|loaded| loaded.session.touch(rays));
+                self.emit(LiveEvent::Touched(touched));
+            }
             Command::Seek(frame) => self.seek(playing, frame),
             Command::Range(marks, loops) => {
                 playing.set_range(|range| (range.marks, range.loops) = (marks, loops))

@@ -8,7 +8,7 @@ use crate::{
     Error, ErrorKind, OutSettings, Scene, Sources, Written,
     body::Aabb,
     render::{Camera, FrameReport, Picture},
-    session::Change,
+    session::{Change, Ray, Touched},
     sim::{StepReport, Stiffening},
 };
 
@@ -33,6 +33,8 @@ pub enum Command {
     Export(Box<Scene>, OutSettings, [u32; 2]),
     /// A change of what plays.
     Change(Change),
+    /// Asks for the place of the shown skin on the first line of sight, and the way from there to the second.
+    Touch([Ray; 2]),
     /// Saves a scene as TOML, after all commands before it: `groom.pose` names a file beside it with the
     /// hair as it is then, which is what is seen where nothing moves; `film.start` is the time. Hair in a
     /// hand is let go in it. The number is that of the load that the scene goes back to.
@@ -107,6 +109,8 @@ pub enum LiveEvent {
     Recorded,
     /// Kept frames are written.
     Exported(Written),
+    /// Answer to [`Command::Touch`]; `None` where the first line of sight meets no skin.
+    Touched(Option<Touched>),
 }
 
 impl From<Error> for LiveEvent {

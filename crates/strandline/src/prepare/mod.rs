@@ -50,7 +50,7 @@ use loading::Loading;
 use crate::{
     BoundStrands, Camera, Error, HeadMotion, Scene,
     body::{Aabb, Collider, Mesh, Shape},
-    groom::{Binding, Guides},
+    groom::{Binding, Groom, Guides},
     strands::hair_pose::HairPose,
     strands::tags::Tags,
 };
@@ -90,22 +90,38 @@ impl Prepared {
         Self::from_sources(scene, &Sources::default())
     }
 
+    /// The hair of a scene at rest, all strands as loaded or grown and after its strokes: head space, their own points.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`].
+    pub fn groom(scene: &Scene) -> Result<Groom, Error> {
+        let sources = Sources::default();
+        let mut loading = Loading::new(scene, &sources)?;
+        placed(&mut loading)?;
+        Ok(loading.groom.unwrap_or_else(|| Groom::empty(0.0)))
+    }
+
     /// Loads and grows everything that a scene names, from memory and files.
     ///
     /// # Errors
     /// As [`Prepared::new`]; a source that the scene does not name, or that is unusable.
     pub fn from_sources(scene: &Scene, sources: &Sources) -> Result<Self, Error> {
         let mut loading = Loading::new(scene, sources)?;
-        read::read(&mut loading)?;
-        ends::turn(&mut loading);
-        place::place(&mut loading)?;
-        fit::fit(&mut loading);
-        solids::solids(&mut loading)?;
-        roots::roots(&mut loading)?;
-        looks::colors(&mut loading)?;
+        placed(&mut loading)?;
         guides::guides(&mut loading)?;
         bind(loading)
     }
+}
+
+/// Stages of loading up to all strands at their place.
+fn placed(loading: &mut Loading) -> Result<(), Error> {
+    read::read(loading)?;
+    ends::turn(loading);
+    place::place(loading)?;
+    fit::fit(loading);
+    solids::solids(loading)?;
+    roots::roots(loading)?;
+    looks::colors(loading)
 }
 
 /// Last stage of loading: all strands bound to their guides, and the motion of the head.

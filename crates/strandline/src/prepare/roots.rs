@@ -17,10 +17,26 @@ pub(super) fn roots(loading: &mut Loading) -> Result<(), Error> {
     if let Some(groom) = &mut loading.groom {
         loading.notes.extend(cover::press(groom, &loading.covers, loading.skull.as_ref()));
     }
+    brush(loading);
     let pair = loading.groom.as_ref().zip(loading.own_mesh());
     let apart = pair.and_then(|(groom, mesh)| guess::apart(groom, mesh));
     loading.notes.extend(apart);
     Ok(())
+}
+
+/// Strokes of a brush over the hair at rest, in their order.
+fn brush(loading: &mut Loading) {
+    let Some(groom) = &mut loading.groom else { return };
+    for (index, stroke) in loading.scene.strokes.iter().enumerate() {
+        let after = stroke.on(groom);
+        if after == *groom {
+            loading.notes.push(format!(
+                "strokes[{index}] changes nothing: no root lies within {} m of its position, or its strength is 0",
+                stroke.radius
+            ));
+        }
+        *groom = after;
+    }
 }
 
 /// The style, on the body of a source or on the mannequin.

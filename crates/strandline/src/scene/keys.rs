@@ -145,7 +145,9 @@ impl Scene {
                 $(given.$section.into_iter().for_each(|given| self.$section.take(given));)*
             };
         }
-        take!(devices, groom, ties, style, body, motion, wind, colliders, simulation, look, body_look);
+        take!(
+            devices, groom, ties, strokes, style, body, motion, wind, colliders, simulation, look, body_look
+        );
         take!(level_of_detail, camera, lights, surroundings, picture, film, timeline);
     }
 }

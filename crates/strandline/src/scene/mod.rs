@@ -39,7 +39,7 @@ pub use timeline::TimelineSection;
 pub use crate::body::Interpolation;
 use crate::{
     Backend, Error,
-    groom::StyleSettings,
+    groom::{Stroke, StyleSettings},
     render::{BodyLook, LevelOfDetail, Light, Look, PictureSettings, Preset, memory::MAX_LIGHTS},
     sim::{Settings, StrandMethod},
 };
@@ -60,6 +60,8 @@ settings! {
         groom: GroomSection = GroomSection::default();
         /// Bands about hair; none named means those of the knots that are found, see `groom.find_ties`.
         ties: Vec<TieSection> = Vec::new(), in [0, 64];
+        /// Strokes of a brush over the hair at rest, one after the other: comb, cut, lengthen, clump, curl.
+        strokes: Vec<Stroke> = Vec::new(), in [0, 4096];
         /// The style that is grown when no groom file is named. The default of every number but
         /// `strand_count` and `seed` is that of the style; those of "long" are shown.
         style: StyleSettings = StyleSettings::default();

@@ -37,7 +37,7 @@ pub(crate) use draft::Draft;
 pub use event::Event;
 pub(crate) use job::{Executor, Inline, Live, Task};
 pub(crate) use kept::Held;
-pub use pick::Ray;
+pub use pick::{Ray, Touched};
 pub(crate) use simulation::Simulation;
 pub(crate) use view::View;
 

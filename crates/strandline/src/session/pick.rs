@@ -115,7 +115,31 @@ pub(crate) struct Picked {
     pub lane: usize,
 }
 
+/// A place of the skin under the mouse, and the way from there that the mouse drew.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touched {
+    /// The place \[m\], head space.
+    pub position: Vec3,
+    /// The way \[m\], head space, parallel to the picture.
+    pub motion: Vec3,
+}
+
 impl<E: Executor> Session<E> {
+    /// The place of the shown skin on the first line of sight, and the way from there to the second at its depth; `None`
+    /// where the first meets no body.
+    pub(crate) fn touch(&self, rays: [Ray; 2]) -> Option<Touched> {
+        let Self { shown, view, .. } = self;
+        let [from, to] = rays.map(|ray| Ray { origin: ray.origin - shown.origin, ..ray });
+        let along = from.to_body(view.painter.mesh()?, &shown.body);
+        let place = along.is_finite().then(|| from.origin + along * from.direction)?;
+        let forward = (view.camera.target - view.camera.position).normalize_or(Vec3::NEG_Z);
+        let depth = (place - to.origin).dot(forward) / to.direction.dot(forward);
+        let end = if depth.is_finite() && depth > 0.0 { to.origin + depth * to.direction } else { place };
+        let head_from_world = shown.body.world_from_head().inverse();
+        let [position, end] = [place, end].map(|place| head_from_world.point(place));
+        Some(Touched { position, motion: end - position })
+    }
+
     /// Takes the hair that a line of sight meets in the shown moment into the hand.
     pub(super) fn grab(&mut self, ray: &Ray, radius: f32) -> Result<(), Error> {
         let Some(Picked { point, index, lane }) = self.pick(ray, radius)? else { return self.release() };

@@ -106,7 +106,8 @@ impl Person {
                 }
                 LiveEvent::Saved(_) => self.saved += 1,
                 LiveEvent::Paused => panic!("it stopped by itself"),
-                LiveEvent::Note(_) | LiveEvent::Recorded | LiveEvent::Exported(_) => {}
+                LiveEvent::Note(_) | LiveEvent::Recorded | LiveEvent::Exported(_) | LiveEvent::Touched(_) => {
+                }
             }
         }
     }
