@@ -157,7 +157,7 @@ law! {
     }
 }
 
-/// Deepest point \[m\] in 2 s (on a software adapter 0.8 s) of a shake of 20 g at 5 Hz: the head goes up to 10 cm a step.
+/// Deepest point \[m\] in 2 s (on a software adapter 0.4 s) of a shake of 20 g at 5 Hz: the head goes up to 10 cm a step.
 fn shaken(on: &On, collider: Collider, settings: &Settings) -> f32 {
     let ball = Ball { center: Vec3::ZERO, radius: 0.1 };
     let hair = ball_of_hair(64, 12, 0.3);
@@ -165,7 +165,7 @@ fn shaken(on: &On, collider: Collider, settings: &Settings) -> f32 {
     let speed = 2.0 * PI * 5.0;
     let amplitude = 20.0 * 9.81 / (speed * speed);
     let mut deepest = 0.0_f32;
-    for step in 1..=on.either(120, 48) {
+    for step in 1..=on.either(120, 24) {
         let aside = Vec3::X * amplitude * (speed * step as f32 / 60.0).sin();
         let head = Pose { translation: aside, ..Pose::IDENTITY };
         let report = rig.step(&Drive::of(head));

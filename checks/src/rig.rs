@@ -28,6 +28,11 @@ impl On {
         if in_full() { full } else { self.either(full, software) }
     }
 
+    /// One number, and a smaller one for the CPU where `STRANDLINE_FULL` is not 1.
+    pub fn brief<T>(&self, full: T, brief: T) -> T {
+        if matches!(self, Self::Cpu) && !in_full() { brief } else { full }
+    }
+
     /// One bound for the CPU and software adapters, and one for hardware, whose arithmetic is not known to the bit.
     pub fn exact_or<T>(&self, exact: T, hardware: T) -> T {
         match self {

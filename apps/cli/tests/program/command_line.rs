@@ -3,6 +3,8 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
+use crate::refusal::refused;
+
 fn strandline(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_strandline")).args(arguments).current_dir(folder).output().unwrap()
 }
@@ -20,7 +22,7 @@ fn works(folder: &Path, arguments: &[&str]) -> String {
 
 /// Runs and expects one clear error with a code, all of some words, and no panic.
 fn fails(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
-    let output = strandline(folder, arguments);
+    let output = refused(folder, arguments);
     let error = text(&output.stderr);
     assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
     assert!(!error.contains("panicked"), "{error}");

@@ -6,6 +6,8 @@ use std::process::{Command, Output};
 use glam::Vec3;
 use strandline::Groom;
 
+use crate::refusal::refused;
+
 fn strandline(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_strandline")).args(arguments).current_dir(folder).output().unwrap()
 }
@@ -19,7 +21,7 @@ fn works(folder: &Path, arguments: &[&str]) -> String {
 
 /// Runs and expects an error of a code with some words.
 fn fails(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
-    let output = strandline(folder, arguments);
+    let output = refused(folder, arguments);
     let error = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
     assert!(words.iter().all(|word| error.contains(word)), "{arguments:?}: {error}");

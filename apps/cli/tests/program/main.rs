@@ -8,5 +8,6 @@ mod hostile_files;
 #[cfg(target_os = "linux")]
 mod limits;
 mod moved;
+mod refusal;
 mod set;
 mod sim_motion;

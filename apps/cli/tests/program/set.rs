@@ -3,6 +3,8 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
+use crate::refusal::refused;
+
 fn strandline(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_strandline")).args(arguments).current_dir(folder).output().unwrap()
 }
@@ -37,7 +39,7 @@ fn mistakes_are_told_with_the_nearest_key_and_the_range() {
         ("motion.name=jump", ["is \"jump\"", "one of still"]),
     ] {
         for command in [&["scene"][..], &["sim"], &["render"]] {
-            let output = strandline(folder.path(), &[command, &["--set", value]].concat());
+            let output = refused(folder.path(), &[command, &["--set", value]].concat());
             let error = String::from_utf8_lossy(&output.stderr).into_owned();
             assert_eq!(output.status.code(), Some(2), "{command:?} {value}: {error}");
             assert!(words.iter().all(|words| error.contains(words)), "{command:?} {value}: {error}");

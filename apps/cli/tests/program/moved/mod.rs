@@ -4,6 +4,8 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
+use crate::refusal::refused;
+
 /// A scene that takes a moment, on the CPU.
 const SMALL: &str = "[style]\nstrand_count = 40\n[body]\nspacing = 0.02\n[look]\nfollow_strands = 2\n\
                      [film]\nframes = 8\nsettle = 0.0\n[devices]\nsimulation = \"cpu\"\npictures = \"cpu\"\n\
@@ -22,7 +24,7 @@ fn works(folder: &Path, arguments: &[&str]) -> String {
 
 /// Runs and expects an error with a code and some words.
 fn fails(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
-    let output = run(folder, arguments);
+    let output = refused(folder, arguments);
     let error = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
     for word in words {
