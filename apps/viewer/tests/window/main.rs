@@ -1,6 +1,7 @@
 //! The window as a person uses it, without a display: its contents are laid out, found by their labels and fed events.
 
 mod loading;
+mod measured;
 mod panels;
 mod person;
 mod timeline;
