@@ -6,7 +6,7 @@ use strandline_checks::flip::compare;
 use strandline_checks::gpu;
 use strandline_groom::Style;
 use strandline_render::gpu::GpuRenderer;
-use strandline_render::{Camera, Look, Picture, PictureSettings, Renderer, ToneMap};
+use strandline_render::{Camera, Light, Look, Picture, PictureSettings, Renderer, ToneMap};
 
 use crate::picture::Both;
 
@@ -86,6 +86,20 @@ fn draw_agrees_on_an_open_body_in_blinding_light() {
     check_pictures("an open head in blinding light", &both, true);
     both.settings.exposure = 0.0;
     check_pictures("all white", &both, true);
+}
+
+#[test]
+fn highlights_of_skin_are_as_wide_as_a_soft_box_makes_them() {
+    let mut both = Both::new(Style::Pixie, 12);
+    // Without shadow the size of the box is seen in highlights alone.
+    let [soft, ..] = Light::studio(both.camera.target);
+    both.lights = vec![Light { samples: 1, shadow: false, intensity: 4.0, ..soft }];
+    both.settings.supersampling = 1;
+    let Some([on_cpu, on_gpu]) = pictures(&both, true) else { return };
+    assert_eq!(compare(&on_gpu, &on_cpu, MEAN, ONE_IN_A_HUNDRED), Ok(()));
+    both.lights[0].width = 0.01;
+    let Some([_, narrow]) = pictures(&both, true) else { return };
+    assert!(compare(&narrow, &on_cpu, MEAN, ONE_IN_A_HUNDRED).is_err());
 }
 
 #[test]

@@ -255,7 +255,7 @@ mod tests {
         [116.0 * y - 16.0, a.hypot(b), b.atan2(a).to_degrees().rem_euclid(360.0)]
     }
 
-    /// What hair of a look shows at its root beside white hair in the same light, linear RGB: see `color_scale` of the
+    /// The colour of hair of a look at its root beside white hair in the same light, linear RGB: see `color_scale` of the
     /// fibre.
     fn shown(preset: Preset) -> Vec3 {
         let look = Look::named(preset);
