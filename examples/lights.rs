@@ -1,5 +1,5 @@
-//! Five colours of hair in five lights, docs/gallery/lights.png: a soft box, a light behind, one from the top,
-//! surroundings of a room and of a field. `cargo run --release -p strandline --example lights`
+//! Five colours of hair in six lights, docs/gallery/lights.png: a soft box, a light behind, one from the top,
+//! surroundings of a room and of a field, and soft boxes on all sides, seen from behind. `cargo run --release -p strandline --example lights`
 
 use std::path::Path;
 use std::sync::Arc;
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let room = surroundings(room)?;
     let field = surroundings(field)?;
     let mut rows = Vec::new();
-    for lights in 0..5 {
+    for lights in 0..6 {
         let mut row = Vec::new();
         for colour in COLOURS {
             let mut look = Look { follow_strands: scene.look.follow_strands, ..Look::named(colour) };
@@ -38,6 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 0 => vec![panel([-0.9, 1.1, 1.35], 0.9, 1.4)],
                 1 => vec![panel([0.3, 0.9, -1.4], 0.5, 3.0)],
                 2 => vec![panel([0.0, 1.7, 0.1], 0.6, 1.6)],
+                5 => Light::all_sides(Vec3::new(0.0, -0.05, 0.0)).to_vec(),
                 _ => Vec::new(),
             })?;
             look.surroundings = match lights {
@@ -45,7 +46,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 4 => Some(field.clone()),
                 _ => None,
             };
-            row.push(hair.picture(&Camera::three_quarter(), &look)?);
+            let camera = if lights == 5 { Camera::back() } else { Camera::three_quarter() };
+            row.push(hair.picture(&camera, &look)?);
         }
         rows.push(row);
     }

@@ -6,7 +6,7 @@ use strandline_checks::flip::compare;
 use strandline_checks::gpu;
 use strandline_groom::Style;
 use strandline_render::gpu::GpuRenderer;
-use strandline_render::{Camera, Look, Picture, PictureSettings, Renderer, ToneMap};
+use strandline_render::{Camera, Light, Look, Picture, PictureSettings, Renderer, ToneMap};
 
 use crate::picture::Both;
 
@@ -86,6 +86,15 @@ fn draw_agrees_on_an_open_body_in_blinding_light() {
     check_pictures("an open head in blinding light", &both, true);
     both.settings.exposure = 0.0;
     check_pictures("all white", &both, true);
+}
+
+#[test]
+fn draw_agrees_on_skin_in_a_soft_box() {
+    let mut both = Both::new(Style::Pixie, 12);
+    let [soft, ..] = Light::studio(both.camera.target);
+    both.lights = vec![Light { samples: 1, shadow: false, intensity: 4.0, ..soft }];
+    both.settings.supersampling = 1;
+    check_pictures("a head in a soft box", &both, true);
 }
 
 #[test]

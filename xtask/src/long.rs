@@ -15,6 +15,8 @@ const TESTS: [((&str, &str), [&str; 2]); 7] = [
     (("STRANDLINE_KILLS", "52"), ["reliability", "kills::"]),
     // Seconds of random clicks, keys and files.
     (("STRANDLINE_RANDOM_USE", "60"), ["window", "random_use::"]),
+    // Actions of a person in a window without a display.
+    (("STRANDLINE_ACTIONS", "2000"), ["window", "measured::random_actions"]),
     // On a software adapter, which else has fewer lights, steps and cells.
     (("STRANDLINE_FULL", "1"), ["pictures", "gpu"]),
     (("STRANDLINE_FULL", "1"), ["laws", "skin_contact::hair_on_a_gpu"]),

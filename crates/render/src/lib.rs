@@ -29,6 +29,7 @@ pub mod memory;
 mod picture;
 mod picture_settings;
 mod preset;
+mod rigs;
 mod scatter;
 mod shadow;
 mod strands;

@@ -69,59 +69,6 @@ impl Light {
         Self { position: self.position - origin, target: self.target - origin, ..*self }
     }
 
-    /// A soft box before and above a head at `target` \[m\] that faces +z, a cool strip behind it and a large, weak fill
-    /// on the far side of the soft box: the lights of a photographer's studio.
-    pub fn studio(target: Vec3) -> [Self; 3] {
-        let light = |x, y, z| Self {
-            kind: LightKind::Rectangle,
-            position: target + Vec3::new(x, y, z),
-            target,
-            ..Self::default()
-        };
-        [
-            Self {
-                color: Vec3::new(1.0, 0.96, 0.92),
-                intensity: 1.3,
-                width: 0.8,
-                height: 0.8,
-                ..light(-0.9, 1.25, 1.35)
-            },
-            Self {
-                color: Vec3::new(0.9, 0.95, 1.0),
-                intensity: 0.9,
-                width: 0.3,
-                height: 0.9,
-                samples: 1,
-                ..light(1.1, 1.2, -1.2)
-            },
-            Self {
-                color: Vec3::new(0.95, 0.97, 1.0),
-                intensity: 0.4,
-                width: 1.2,
-                height: 1.2,
-                samples: 1,
-                ..light(1.7, 0.25, 0.35)
-            },
-        ]
-    }
-
-    /// Three lights about a head at `target` \[m\] that faces +z [Chen2011 §6]: a warm key and a cool rim, two spot lights
-    /// with shadows, and a fill without.
-    pub fn three_point(target: Vec3) -> [Self; 3] {
-        let light = |x, y, z| Self { position: target + Vec3::new(x, y, z), target, ..Self::default() };
-        [
-            Self { color: Vec3::new(1.0, 0.95, 0.88), intensity: 1.35, ..light(-0.9, 1.25, 1.35) },
-            Self { color: Vec3::new(0.85, 0.93, 1.0), intensity: 1.7, ..light(1.1, 1.2, -1.2) },
-            Self {
-                kind: LightKind::Directional,
-                color: Vec3::new(0.9, 0.95, 1.0),
-                intensity: 0.22,
-                shadow: false,
-                ..light(1.5, 0.2, 1.2)
-            },
-        ]
-    }
-
     /// Checks the settings.
     ///
     /// # Errors
@@ -181,6 +128,16 @@ impl Light {
                 let side = 0.5 * std::f32::consts::PI.sqrt() * self.width / count;
                 [right * side, up * side]
             }
+        }
+    }
+
+    /// Area \[m^2\] of that part.
+    pub(crate) fn part_area(&self) -> f32 {
+        let count = self.sample_count() as f32;
+        match self.kind {
+            LightKind::Directional | LightKind::Spot | LightKind::Point => 0.0,
+            LightKind::Rectangle => self.width * self.height / count,
+            LightKind::Disc => 0.25 * std::f32::consts::PI * self.width * self.width / count,
         }
     }
 
@@ -337,6 +294,10 @@ mod tests {
             .map(|[x, y]| (1.0 + x * x + y * y).powi(-2) * 1e-4 * (1.0 + x * x + y * y).sqrt())
             .sum();
         assert!((shown / exact - 1.0).abs() < 0.03, "{shown} {exact}");
+        let areas = [places[0], places[16], places[32]].map(|place| place.part_area());
+        let sides = places[0].part().map(Vec3::length);
+        assert!((areas[0] - sides[0] * sides[1]).abs() < 1e-7 && areas[2] == 0.0, "{areas:?}");
+        assert!((areas[1] / areas[0] - 0.25 * std::f32::consts::PI).abs() < 1e-5);
         // Nothing shines backward, and all places lie on the disc.
         assert_eq!(places[0].at(Vec3::Y * 2.0).radiance, Vec3::ZERO);
         assert!(places[16..32].iter().all(|place| place.position.distance(Vec3::Y) <= 0.25));
@@ -355,6 +316,7 @@ mod tests {
 
     #[test]
     fn bad_lights_are_refused() {
+        assert!(Light::all_sides(Vec3::ZERO).iter().all(|light| light.validate().is_ok()));
         assert!(Light::three_point(Vec3::ZERO).iter().all(|light| light.validate().is_ok()));
         assert!(Light::studio(Vec3::ONE).iter().all(|light| light.validate().is_ok()));
         assert!(Light { position: Vec3::ZERO, ..Light::default() }.validate().is_err());

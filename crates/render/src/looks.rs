@@ -244,6 +244,58 @@ mod tests {
         assert_eq!([Look::white().grey, Look::grey().grey], [1.0, 0.6]);
     }
 
+    /// Lightness, chroma and hue [degrees] in CIE L*C*h of a colour, linear RGB, in white light (D65).
+    fn lightness_chroma_hue(color: Vec3) -> [f32; 3] {
+        let rows = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]];
+        let [x, y, z] = rows.map(|row| {
+            let share = color.dot(Vec3::from(row)) / row.iter().sum::<f32>();
+            if share > 0.008_856 { share.cbrt() } else { 7.787 * share + 16.0 / 116.0 }
+        });
+        let (a, b) = (500.0 * (x - y), 200.0 * (y - z));
+        [116.0 * y - 16.0, a.hypot(b), b.atan2(a).to_degrees().rem_euclid(360.0)]
+    }
+
+    /// The colour of hair of a look at its root beside white hair in the same light, linear RGB: see `color_scale` of the
+    /// fibre.
+    fn shown(preset: Preset) -> Vec3 {
+        let look = Look::named(preset);
+        if preset.is_dyed() {
+            look.root_color
+        } else {
+            block(preset).map(f32::sqrt).lerp(Vec3::ONE, look.grey)
+        }
+    }
+
+    #[test]
+    fn names_read_as_their_names() {
+        use Preset::{Black, Blonde, Blue, Brown, Copper, Green, Grey, Pink, Red, Violet, White};
+        // Ranges of lightness, chroma and hue [degrees] of docs/methods/looks.md.
+        let ranges = [
+            (Black, [0.0, 8.0], [0.0, 8.0], [0.0, 360.0]),
+            (Brown, [22.0, 40.0], [12.0, 30.0], [50.0, 85.0]),
+            (Red, [28.0, 45.0], [28.0, 50.0], [30.0, 73.0]),
+            (Copper, [42.0, 58.0], [28.0, 50.0], [40.0, 78.0]),
+            (Blonde, [55.0, 82.0], [12.0, 32.0], [76.0, 95.0]),
+            (Grey, [60.0, 90.0], [0.0, 5.0], [0.0, 360.0]),
+            (White, [90.0, 100.1], [0.0, 3.0], [0.0, 360.0]),
+            (Blue, [20.0, 50.0], [35.0, 80.0], [265.0, 310.0]),
+            (Pink, [45.0, 75.0], [30.0, 60.0], [340.0, 360.0]),
+            (Violet, [20.0, 45.0], [40.0, 70.0], [300.0, 325.0]),
+            (Green, [35.0, 65.0], [25.0, 60.0], [140.0, 170.0]),
+        ];
+        let named = Preset::ALL.iter().filter(|preset| **preset != Preset::Thesis).count();
+        assert_eq!(named, ranges.len(), "a look without ranges");
+        for (preset, lightness, chroma, hue) in ranges {
+            let values = lightness_chroma_hue(shown(preset));
+            println!("{preset:?} {values:.1?}");
+            for (value, [low, high]) in values.into_iter().zip([lightness, chroma, hue]) {
+                assert!((low..=high).contains(&value), "{preset:?}: {values:?}");
+            }
+        }
+        let of = |preset| lightness_chroma_hue(shown(preset));
+        assert!(of(Red)[2] < of(Brown)[2] && of(Red)[1] > 1.25 * of(Brown)[1], "red is redder than brown");
+    }
+
     #[test]
     fn looks_are_near_measured_hair() {
         // Hair measured in an integrating sphere, specular light left out [Scanavez2000, tables III, IV]: L* of black and

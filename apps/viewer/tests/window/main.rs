@@ -2,6 +2,7 @@
 
 mod brushes;
 mod loading;
+mod measured;
 mod panels;
 mod person;
 mod timeline;

@@ -12,11 +12,11 @@ const BROWS: Vec3 = Vec3::new(0.16, 0.13, 0.115);
 const LASHES: Vec3 = Vec3::new(0.10, 0.085, 0.08);
 const HOLLOW: Vec3 = Vec3::new(0.26, 0.15, 0.14);
 /// Places that are flushed: centre \[m\] on the side of positive x, radius \[m\], and share.
-const FLUSHED: [(Vec3, f32, f32); 3] = [
-    (Vec3::new(0.044, -0.046, 0.080), 0.024, 0.75),
-    (Vec3::new(0.0, -0.048, 0.112), 0.015, 0.7),
-    (Vec3::new(0.086, -0.030, -0.010), 0.036, 0.9),
-];
+const FLUSHED: [(Vec3, f32, f32); 2] =
+    [(Vec3::new(0.044, -0.046, 0.080), 0.024, 0.75), (Vec3::new(0.0, -0.048, 0.112), 0.015, 0.7)];
+/// The same of an ear, and how far from the middle \[m\] it begins and stands off the head: skin beside it has none.
+const EAR_FLUSH: (Vec3, f32, f32) = (Vec3::new(0.086, -0.030, -0.010), 0.036, 0.9);
+const EAR_BASE: [f32; 2] = [0.077, 0.086];
 /// Bottom of the ear's hollow \[m\].
 const CONCHA: Vec3 = Vec3::new(0.0815, -0.0370, -0.0020);
 /// Middle line of a brow, from its inner end: x and y \[m\]; and its greatest half width.
@@ -39,6 +39,9 @@ pub(super) fn factor(shape: &BustShape, point: Vec3) -> Vec3 {
         let near = 1.0 - smooth(half.distance(center), 0.2 * radius, radius);
         color *= Vec3::ONE.lerp(FLUSH, near * share);
     }
+    let (ear, radius, share) = EAR_FLUSH;
+    let near = 1.0 - smooth(half.distance(ear), 0.2 * radius, radius);
+    color *= Vec3::ONE.lerp(FLUSH, near * share * smooth(half.x, EAR_BASE[0], EAR_BASE[1]));
     color *= Vec3::ONE.lerp(HOLLOW, 0.55 * (1.0 - smooth(half.distance(CONCHA), 0.0030, 0.0095)));
     if point.z < 0.05 {
         return color;
@@ -86,13 +89,15 @@ fn brow(half: Vec3, side: f32) -> f32 {
     }
     let (off, along) = nearest;
     let width =
-        BROW_WIDTH * (0.55 + 0.45 * smooth(along, 0.0, 0.25)) * (1.0 - 0.72 * smooth(along, 0.45, 1.0));
+        BROW_WIDTH * (0.62 + 0.38 * smooth(along, 0.0, 0.30)) * (1.0 - 0.72 * smooth(along, 0.45, 1.0));
     // Streaks along hairs that rise outward.
     let streak =
         Vec3::new(1100.0 * (0.8 * half.x - 0.6 * half.y), 220.0 * (0.6 * half.x + 0.8 * half.y), side);
-    let ragged = 0.72 + 0.28 * mottled(streak);
-    let dense = smooth(along, -0.05, 0.10) * (1.0 - 0.5 * smooth(along, 0.7, 1.0));
-    ragged * dense * (1.0 - smooth(off, 0.45 * width, 1.25 * width))
+    let ragged = 0.68 + 0.32 * mottled(streak);
+    // Few hairs at the inner end, and a tail that fades.
+    let inner = smooth(half.x, BROW[0].x - 0.0030, BROW[0].x + 0.0085);
+    let dense = inner * (1.0 - 0.6 * smooth(along, 0.6, 1.0));
+    ragged * dense * (1.0 - smooth(off, 0.15 * width, 1.45 * width))
 }
 
 /// Smooth noise over the lattice of whole numbers, -1 to 1.

@@ -200,7 +200,8 @@ mirror! {
         pub part: [f32; 4],
         /// Places of its light, of which it is one; those of a light follow each other.
         pub places: u32,
-        pub unused: u32,
+        /// Area of that part \[m^2\].
+        pub area: f32,
         pub unused_too: u32,
         pub unused_last: u32,
     }
@@ -340,7 +341,7 @@ impl LightSource {
                     [across.x, across.y, along.x, along.y]
                 },
                 places: light.sample_count() as u32,
-                unused: 0,
+                area: light.part_area(),
                 unused_too: 0,
                 unused_last: 0,
             };

@@ -45,8 +45,11 @@ impl Skin<'_> {
         while let Some(light) = self.lights.get(first) {
             let count = light.sample_count().min(self.lights.len() - first);
             for place in 0..count {
-                let lit = self.lights[first + place].at(point);
-                let reflected = reflectance(finish, normal, to_eye, lit.to_light) * lit.radiance;
+                let source = &self.lights[first + place];
+                let lit = source.at(point);
+                let square = source.position.distance_squared(point).max(1e-6);
+                let blur = SLOPE_SHARE * source.part_area() / square;
+                let reflected = reflectance(finish, normal, to_eye, lit.to_light, blur) * lit.radiance;
                 if reflected != Vec3::ZERO {
                     let map = self.shadows.map(first + place);
                     let passed = map.map_or(1.0, |map| map.on_skin(point, normal, [place, count]));
@@ -103,19 +106,27 @@ impl Finish {
 pub(crate) const GREEN_WAY: f32 = 0.372;
 pub(crate) const BLUE_WAY: f32 = 0.186;
 const TRAVEL: Vec3 = Vec3::new(1.0, GREEN_WAY, BLUE_WAY);
-/// Share of what a penumbra hides that red light, scattered in from beside it, brings back.
-pub(crate) const BLEED: f32 = 0.6;
+/// Share of what a penumbra hides that red light, scattered in from beside it, brings back. Penumbrae of soft lights are
+/// some centimetres wide, many ways of red light: only a part of them is near enough to lit skin.
+pub(crate) const BLEED: f32 = 0.2;
 /// Width of the highlight of oil over that of the skin.
 pub(crate) const OIL_WIDTH: f32 = 0.6;
 
 /// Least roughness of a material: the highlight of a smoother one is smaller than a sample.
 pub(crate) const LEAST_ROUGHNESS: f32 = 0.2;
 
+/// Square of the width that a highlight gains from the size of a light, over the solid angle \[sr\] of its part. Ways to a
+/// square of side `s` at a distance of 1 have a variance of `s^2 / 12` along each side, halfway vectors a quarter of it:
+/// that of slopes of a normal distribution of width `s / sqrt(24)` \[Walter2007 eq. 25\]. With half as much again
+/// the long tails of the distribution here come within a tenth of the sum over a light.
+pub(crate) const SLOPE_SHARE: f32 = 0.0625;
+
 /// Share of a light's irradiance (on a surface that faces it) that leaves toward the camera
-/// \[1/sr\], linear RGB. All directions are unit vectors away from the surface.
-fn reflectance(finish: &Finish, normal: Vec3, to_eye: Vec3, to_light: Vec3) -> Vec3 {
+/// \[1/sr\], linear RGB. All directions are unit vectors away from the surface. `blur` is added to the square of the
+/// highlights' width.
+fn reflectance(finish: &Finish, normal: Vec3, to_eye: Vec3, to_light: Vec3, blur: f32) -> Vec3 {
     let facing = normal.dot(to_light);
-    finish.diffuse * (wrapped(facing, finish.reach) / PI) + highlights(finish, normal, to_eye, to_light)
+    finish.diffuse * (wrapped(facing, finish.reach) / PI) + highlights(finish, normal, to_eye, to_light, blur)
 }
 
 /// The cosine of light, smooth over its reach about the edge of shadow, of each channel. It is scaled so that a sphere
@@ -131,13 +142,13 @@ fn wrapped(facing: f32, reach: Vec3) -> Vec3 {
 pub(crate) const LEAST_REACH: f32 = 1e-3;
 
 /// The highlight of skin under a film of oil: a wide lobe and a narrow one.
-fn highlights(finish: &Finish, normal: Vec3, to_eye: Vec3, to_light: Vec3) -> Vec3 {
-    let wide = highlight(finish, normal, to_eye, to_light);
+fn highlights(finish: &Finish, normal: Vec3, to_eye: Vec3, to_light: Vec3, blur: f32) -> Vec3 {
+    let wide = highlight(finish, normal, to_eye, to_light, blur);
     if finish.oil == 0.0 {
         return wide;
     }
     let oily = Finish { roughness: (finish.roughness * OIL_WIDTH).max(LEAST_ROUGHNESS), ..*finish };
-    wide.lerp(highlight(&oily, normal, to_eye, to_light), finish.oil)
+    wide.lerp(highlight(&oily, normal, to_eye, to_light, blur), finish.oil)
 }
 
 /// Share of light, of each channel, that reaches skin of which a share sees the light: red comes in from beside.
@@ -147,13 +158,13 @@ fn bled(passed: f32, bleed: f32) -> Vec3 {
 
 /// Microfacets with the distribution and masking of \[Walter2007\] and the Fresnel term of
 /// \[Schlick1994\].
-fn highlight(finish: &Finish, normal: Vec3, to_eye: Vec3, to_light: Vec3) -> Vec3 {
+fn highlight(finish: &Finish, normal: Vec3, to_eye: Vec3, to_light: Vec3, blur: f32) -> Vec3 {
     let (light, eye) = (normal.dot(to_light), normal.dot(to_eye).max(1e-3));
     if light <= 0.0 {
         return Vec3::ZERO;
     }
     let half = (to_light + to_eye).normalize_or(normal);
-    let spread = finish.roughness.powi(4);
+    let spread = (finish.roughness.powi(4) + blur).min(1.0);
     let cosine = normal.dot(half).max(0.0);
     let lobe = cosine * cosine * (spread - 1.0) + 1.0;
     let distribution = spread / (PI * lobe * lobe); // [Walter2007 eq. 33]
@@ -183,7 +194,7 @@ mod tests {
             for turn in 0..64 {
                 let angle = turn as f32 / 64.0 * 2.0 * PI;
                 let to_eye = Vec3::new(sine * angle.cos(), cosine, sine * angle.sin());
-                total += reflectance(&finish, Vec3::Y, to_eye, to_light).x * PI / (count * 64) as f32;
+                total += reflectance(&finish, Vec3::Y, to_eye, to_light, 0.0).x * PI / (count * 64) as f32;
             }
         }
         // Irradiance is 0.8 of the light; the wrap shifts some of it, the highlight adds at most 4 %
@@ -195,7 +206,7 @@ mod tests {
     fn light_from_behind_leaves_nothing() {
         let look = BodyLook { wrap: 0.0, softness: 0.0, ..BodyLook::default() };
         let finish = Finish::new(&look, Vec3::ONE, None);
-        assert_eq!(reflectance(&finish, Vec3::Y, Vec3::Y, Vec3::new(0.1, -0.99, 0.0)), Vec3::ZERO);
+        assert_eq!(reflectance(&finish, Vec3::Y, Vec3::Y, Vec3::new(0.1, -0.99, 0.0), 0.0), Vec3::ZERO);
     }
 
     #[test]
@@ -219,11 +230,41 @@ mod tests {
     }
 
     #[test]
+    fn one_place_has_the_highlight_of_the_many_of_a_light() {
+        // A square of 1.2 m at 1.75 m in one part, and in 400 that are points.
+        let look = BodyLook { color: Vec3::ZERO, ..BodyLook::default() };
+        let finish = Finish::new(&look, Vec3::ONE, None);
+        let distance = 1.75;
+        let whole = Light {
+            kind: crate::LightKind::Rectangle,
+            position: Vec3::Y * distance,
+            width: 1.2,
+            height: 1.2,
+            samples: 1,
+            ..Light::default()
+        };
+        let blur = SLOPE_SHARE * whole.part_area() / (distance * distance);
+        let place = |at: usize| 1.2 * ((at as f32 + 0.5) / 20.0 - 0.5);
+        for degrees in [0.0_f32, 10.0, 20.0, 30.0] {
+            let angle = degrees.to_radians();
+            let to_eye = Vec3::new(angle.sin(), angle.cos(), 0.0);
+            let at = |to_light, blur| highlights(&finish, Vec3::Y, to_eye, to_light, blur).x;
+            let ways = (0..400).map(|way| Vec3::new(place(way % 20), distance, place(way / 20)).normalize());
+            let many = ways.map(|way| at(way, 0.0) / 400.0).sum::<f32>();
+            let (one, point) = (at(Vec3::Y, blur), at(Vec3::Y, 0.0));
+            assert!((one / many - 1.0).abs() < 0.1, "{degrees}: {one} {many} {point}");
+            if degrees == 0.0 {
+                assert!(point > 1.5 * many, "{point} {many}");
+            }
+        }
+    }
+
+    #[test]
     fn oil_narrows_the_highlight_of_skin_alone() {
         let peak = |oil: f32, painted: Option<&Painted>| {
             let look = BodyLook { oil, ..BodyLook::default() };
             let finish = Finish::new(&look, Vec3::ONE, painted);
-            highlights(&finish, Vec3::Y, Vec3::Y, Vec3::Y).x
+            highlights(&finish, Vec3::Y, Vec3::Y, Vec3::Y, 0.0).x
         };
         assert!(peak(0.5, None) > 1.5 * peak(0.0, None));
         let cloth = Painted::of_color(Vec3::splat(0.5));
