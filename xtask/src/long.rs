@@ -10,7 +10,7 @@ use crate::cargo::{cargo_command, root};
 use crate::{adapter, bare, python, web};
 
 /// Long tests: an environment, and the words for cargo behind `test --workspace --test`.
-const TESTS: [((&str, &str), [&str; 2]); 7] = [
+const TESTS: [((&str, &str), [&str; 2]); 8] = [
     // Each command is ended as often as this, at random times.
     (("STRANDLINE_KILLS", "52"), ["reliability", "kills::"]),
     // Seconds of random clicks, keys and files.
