@@ -4,12 +4,14 @@ use std::collections::HashMap;
 
 use glam::{IVec3, Vec3};
 use strandline::{Prepared, Scene, Style, low_level::BoundStrands};
-use strandline_body::{BodyFrame, Mannequin, Pose, SignedDistance};
+use strandline_body::{BodyFrame, Mannequin, Motion, Pose, SignedDistance};
+use strandline_checks::{On, Rig, in_full};
 use strandline_groom::{Frames, Vec3Lanes};
 use strandline_render::{
     DetailLevel, Strands,
     cpu::{Curves, interpolate, keep_outside, tessellate},
 };
+use strandline_sim::{Drive, Model};
 
 /// Distance \[m\] within which strands run side by side, and the length \[m\] along which they then are alike.
 const BESIDE: f32 = 5e-4;
@@ -21,21 +23,27 @@ const SPACING: f32 = 0.005;
 /// The drawn strands of a scene at rest, shape `[strand][point]` \[m\].
 fn drawn(scene: &Scene) -> Vec<Vec<Vec3>> {
     let prepared = Prepared::new(scene).unwrap();
+    drawn_at(&prepared, prepared.guides.positions(), &BodyFrame::REST)
+}
+
+/// The drawn strands of guides at places in world space and a body, shape `[strand][point]` \[m\].
+fn drawn_at(prepared: &Prepared, guides: &[Vec3Lanes], body: &BodyFrame) -> Vec<Vec<Vec3>> {
     let (mut frames, mut placed) = (Frames::default(), Vec::new());
     let (all, positions): (_, &[Vec3Lanes]) = match &prepared.bound {
         Some(bound) => {
-            bound.place(prepared.guides.positions(), &BodyFrame::REST, &mut frames, &mut placed);
+            bound.place(guides, body, &mut frames, &mut placed);
             (bound.strands(), &placed)
         }
-        None => (&prepared.guides, prepared.guides.positions()),
+        None => (&prepared.guides, guides),
     };
     let look = &prepared.scene.look;
     let level = DetailLevel::full(prepared.scene.level_of_detail.segments_per_span, look.follow_strands);
     let (mut curves, mut strands) = (Curves::default(), Strands::default());
-    tessellate(positions, all, &Pose::IDENTITY, &level, &mut curves);
-    interpolate(&curves, all, &Pose::IDENTITY, look, &level, &mut strands);
+    let world_from_head = body.world_from_head();
+    tessellate(positions, all, &world_from_head, &level, &mut curves);
+    interpolate(&curves, all, &world_from_head, look, &level, &mut strands);
     if let Some(solids) = prepared.bound.as_ref().map(BoundStrands::solids) {
-        keep_outside(&mut strands, &curves, all.points_per_strand(), &solids.placed(Pose::IDENTITY));
+        keep_outside(&mut strands, &curves, all.points_per_strand(), &solids.placed(body));
     }
     let each = level.segment_count(all.points_per_strand()) + 1;
     strands.positions.chunks(each).map(<[Vec3]>::to_vec).collect()
@@ -138,13 +146,18 @@ fn scene(style: Style) -> Scene {
 #[test]
 fn drawn_strands_are_no_copies_of_others() {
     let mut alike = Vec::new();
-    for style in Style::ALL {
-        let found = likeness(&drawn(&scene(style)), 37);
+    let some = [Style::Long, Style::Ponytail, Style::Bun, Style::Braid];
+    let (styles, n) = if in_full() { (Style::ALL.to_vec(), 37) } else { (some.to_vec(), 97) };
+    for style in styles {
+        let found = likeness(&drawn(&scene(style)), n);
         println!("{}: {:.1} % of the strands run beside another one", style.name(), 100.0 * found);
-        // Straight long hair and hair that is gathered run side by side still: 11 to 15 % were seen of long, ponytail and
-        // bun, and none of the four is below the bound.
-        let gathered = matches!(style, Style::Long | Style::Ponytail | Style::Bun | Style::Braid);
-        let most = if gathered { 0.25 } else { 0.05 };
+        // Follow strands keep beside their own in long hair, and hair that is wound or plaited is packed: 5 % is asked
+        // for, and 7.3 % of long hair, 7.4 % of a bun and 14 % of a braid were seen.
+        let most = match style {
+            Style::Long | Style::Bun => 0.12,
+            Style::Braid => 0.25,
+            _ => 0.05,
+        };
         alike.extend((found > most).then_some((style, found)));
     }
     assert!(alike.is_empty(), "{alike:?}");
@@ -156,23 +169,61 @@ fn drawn_strands_are_no_copies_of_others() {
     assert!(found > 0.05, "the comparison can fail: {found}");
 }
 
+/// Points of drawn strands in world space, how many of them lie inside the head or its ears, and the deepest \[m\].
+fn inside(mannequin: &Mannequin, strands: &[Vec<Vec3>], world_from_head: Pose) -> (usize, usize, f32) {
+    let head_from_world = world_from_head.inverse();
+    let (mut points, mut inside, mut deepest) = (0, 0, 0.0_f32);
+    for point in strands.iter().flat_map(|strand| &strand[1..]) {
+        let depth = -mannequin.distance(head_from_world.point(*point));
+        points += 1;
+        // Rounding of the surface itself.
+        inside += usize::from(depth > 1e-4);
+        deepest = deepest.max(depth);
+    }
+    (points, inside, deepest)
+}
+
 #[test]
 fn drawn_strands_stay_out_of_the_head() {
     let mannequin = Mannequin::new();
     for style in Style::ALL {
         let mut scene = scene(style);
         scene.style.strand_count = 400;
-        let (mut points, mut inside, mut deepest) = (0, 0, 0.0_f32);
-        for strand in drawn(&scene) {
-            for point in &strand[1..] {
-                let depth = -mannequin.distance(*point);
-                points += 1;
-                // Rounding of the surface itself.
-                inside += usize::from(depth > 1e-4);
-                deepest = deepest.max(depth);
-            }
-        }
+        let (points, inside, deepest) = inside(&mannequin, &drawn(&scene), Pose::IDENTITY);
         println!("{}: {inside} of {points} points inside, the deepest {:.2} mm", style.name(), 1e3 * deepest);
         assert!(inside as f32 <= 1e-3 * points as f32 && deepest <= 1e-3, "{}", style.name());
     }
+}
+
+#[test]
+fn drawn_strands_stay_out_of_the_head_that_shakes() {
+    let mannequin = Mannequin::new();
+    let some = [Style::Bob, Style::Pixie, Style::Bun];
+    let styles = if in_full() { Style::ALL.to_vec() } else { some.to_vec() };
+    let mut failed = Vec::new();
+    for style in styles {
+        let mut scene = scene(style);
+        scene.style.strand_count = if in_full() { 400 } else { 100 };
+        let prepared = Prepared::new(&scene).unwrap();
+        let settings = prepared.scene.simulation.clone();
+        let model = Model::new(&prepared.guides, &settings, prepared.colliders.clone()).unwrap();
+        let mut rig = Rig::new(&On::Cpu, model);
+        let step = f64::from(settings.time_step);
+        let (mut points, mut within, mut deepest) = (0, 0, 0.0_f32);
+        // A look after each quarter of a second of two.
+        let look_every = (0.25 / step).round() as u32;
+        for index in 1..=8 * look_every {
+            let world_from_head = Motion::Shake.pose(f64::from(index) * step, Vec3::new(0.0, -0.1, 0.0));
+            rig.step(&Drive::of(world_from_head));
+            if index.is_multiple_of(look_every) {
+                let state = rig.state();
+                let strands = drawn_at(&prepared, &state.positions, &state.body);
+                let found = inside(&mannequin, &strands, world_from_head);
+                (points, within, deepest) = (points + found.0, within + found.1, deepest.max(found.2));
+            }
+        }
+        println!("{}: {within} of {points} points inside, the deepest {:.2} mm", style.name(), 1e3 * deepest);
+        failed.extend((within as f32 > 1e-3 * points as f32 || deepest > 1e-3).then_some(style));
+    }
+    assert!(failed.is_empty(), "{failed:?}");
 }

@@ -17,6 +17,7 @@ mod opacity;
 mod penumbra;
 mod resolve;
 mod round;
+mod scalp;
 mod screen;
 mod shading;
 mod shares;

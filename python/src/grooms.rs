@@ -163,11 +163,12 @@ pub fn load<'py>(
     Ok((dictionary(py, loaded.groom)?, loaded.report.problems))
 }
 
-/// Grows the style of a scene in TOML.
+/// Grows the style of a scene in TOML: guides alone, or `groom.bound` strands in all.
 #[pyfunction]
 pub fn grow<'py>(py: Python<'py>, scene: &str) -> PyResult<Bound<'py, PyDict>> {
     let scene = scenes::parsed(py, scene, Path::new(""))?;
-    let groom = errors::run(py, || Ok(scene.style.grow()?))?;
+    let strands = scene.groom.bound.map_or(0, |bound| bound as usize);
+    let groom = errors::run(py, || Ok(scene.style.grow_hair(strands)?))?;
     dictionary(py, groom)
 }
 

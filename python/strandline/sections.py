@@ -101,7 +101,9 @@ class Groom(TypedDict, total=False):
 
     bound: int
     """Strands that a style grows in all, of which `style.strand_count` are simulated and the others bound to them;
-    not more than those, all are simulated. Without it eight for each that is simulated. Allowed: 0 to 8,000,000."""
+    not more than those, all are simulated. Without it eight for each that is simulated. `look.follow_strands` counts
+    for each of them: a file that names it and was written before this key draws eight times as many strands, unless
+    it has `bound = 0`. Allowed: 0 to 8,000,000."""
 
     points_per_strand: int
     """Points on each guide. Without a groom file the default is that of the style. Allowed: 4 to 64."""

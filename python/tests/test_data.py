@@ -129,6 +129,9 @@ def test_attributes_survive_a_file(tmp_path, points):
 
 def test_styles_grow_by_keyword():
     groom = strandline.grow("bob", strand_count=40, seed=3)
+    whole = strandline.grow("bob", strand_count=40, seed=3, strands=100)
+    assert whole.strand_count == 100 and whole["guide_flags"].sum() == 40 and whole["guide_flags"][:40].all()
+    assert np.array_equal(whole.points[: len(groom.points)], groom.points)
     assert len(groom) == 40
     again = strandline.grow("bob", strand_count=40, seed=3)
     assert np.array_equal(groom.points, again.points)

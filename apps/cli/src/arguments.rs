@@ -230,6 +230,10 @@ pub struct GroomOptions {
     /// Number of strands.
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..=8_000_000))]
     pub strands: u32,
+    /// Mark so many of the strands as guides, where the format can, and grow the others between them, each with a curve
+    /// of its own, as a scene draws them. Without it all strands are combed alike.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8_000_000))]
+    pub guides: Option<u32>,
     /// Seed of every random choice.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,

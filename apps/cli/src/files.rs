@@ -12,12 +12,12 @@ use crate::progress::Waiting;
 /// Grows a style and writes it.
 pub fn groom(options: &GroomOptions) -> anyhow::Result<()> {
     let settings = StyleSettings {
-        strand_count: options.strands as usize,
+        strand_count: options.guides.map_or(options.strands, |guides| guides.min(options.strands)) as usize,
         seed: options.seed,
         ..StyleSettings::new(options.style)
     };
     let waiting = Waiting::begin("growing strands");
-    let groom = settings.grow()?;
+    let groom = settings.grow_hair(options.strands as usize)?;
     drop(waiting);
     write(&groom, &options.out)
 }

@@ -126,6 +126,11 @@ fn grooms_are_grown_converted_and_described() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     works(at, &["groom", "--style", "curly", "--strands", "30", "--seed", "4", "--out", "a.hair"]);
+    works(at, &["groom", "--style", "bob", "--strands", "60", "--guides", "12", "--out", "own.npz"]);
+    let own =
+        strandline::format::load(&at.join("own.npz"), &strandline::format::LoadOptions::default()).unwrap();
+    let marks = own.groom.guide_flags.unwrap();
+    assert_eq!((marks.len(), marks.iter().filter(|mark| **mark).count()), (60, 12));
     works(at, &["convert", "a.hair", "b.tfx"]);
     works(at, &["convert", "b.tfx", "c.hair", "--points", "5"]);
     let thin = ["convert", "a.hair", "d.ply", "--thin", "7", "--turn", "0,90,0", "--move", "-1,0,0"];

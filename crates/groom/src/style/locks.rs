@@ -69,7 +69,7 @@ impl One<'_> {
         let strand = &self.own.strand;
         let length: f32 = strand.points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
         let bends = Bends::in_lock(self.settings, strand, self.clump, self.lock, self.index);
-        let wisp = Wisp::new(self.settings, &mut random, if is_stray { STRAY } else { 0.4 + 1.2 * frizz });
+        let wisp = Wisp::new(self.settings, &mut random, if is_stray { STRAY } else { 0.7 + 0.6 * frizz });
         let held = if is_stray { 0.15 } else { 0.7 + 0.5 * pull };
         let last = strand.points.len() - 1;
         // Curls of a lock turn about one axis: its middle lends the directions across.
@@ -156,15 +156,15 @@ struct Wisp {
 impl Wisp {
     fn new(settings: &StyleSettings, random: &mut Random, size: f32) -> Self {
         let phases = std::array::from_fn(|_| TAU * random.unit());
-        // Waves of 4.5 to 13 cm.
-        let rates = std::array::from_fn(|_| 48.0 + 90.0 * random.unit());
+        // Waves of 4 to 8 cm: neighbours that touch part again within one of them.
+        let rates = std::array::from_fn(|_| 80.0 + 77.0 * random.unit());
         Self { amplitude: settings.frizz * size, phases, rates }
     }
 
     /// Offset \[m\] at a length along the strand \[m\].
     fn offset(&self, [side, up]: [Vec3; 2], along: f32) -> Vec3 {
         let wave = |which: usize| math::sin(self.phases[which] + self.rates[which] * along);
-        let grown = self.amplitude * smooth(0.0, 0.09, along);
+        let grown = self.amplitude * smooth(0.0, 0.06, along);
         grown * ((wave(0) + 0.5 * wave(1)) * side + (0.8 * wave(2) + 0.4 * wave(3)) * up)
     }
 }

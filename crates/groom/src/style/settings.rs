@@ -253,7 +253,7 @@ impl StyleSettings {
             clump_share: 0.1,
             noise: 0.001,
             lock_share: 0.3,
-            frizz: 0.001,
+            frizz: 0.0016,
             strays: 0.02,
             ..self
         }
@@ -268,7 +268,7 @@ impl StyleSettings {
             clump_share: 0.1,
             noise: 0.001,
             lock_share: 0.3,
-            frizz: 0.001,
+            frizz: 0.0016,
             strays: 0.025,
             thinning: 0.1,
             ..self

@@ -83,7 +83,9 @@ settings! {
         /// Simulate every n-th strand; the others are bound to them. `guides` comes before it.
         guide_every: u32 = 1, in [1, 1_000_000], more "fewer simulated strands";
         /// Strands that a style grows in all, of which `style.strand_count` are simulated and the others bound
-        /// to them; not more than those, all are simulated. Without it eight for each that is simulated.
+        /// to them; not more than those, all are simulated. Without it eight for each that is simulated. `look.follow_strands`
+        /// counts for each of them: a file that names it and was written before this key draws eight times as
+        /// many strands, unless it has `bound = 0`.
         bound: Option<u32> = None, in [0, 8_000_000], slider [0, 100_000], more "hair of its own in place of tufts";
         /// Points on each guide. Without a groom file the default is that of the style.
         points_per_strand: u32 = 16, in [4, 64], more "finer curls at a higher cost";
