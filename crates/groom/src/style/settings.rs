@@ -161,7 +161,7 @@ impl StyleSettings {
             wave_amplitude: 0.003,
             wave_length: 0.12,
             noise: 0.002,
-            frizz: 0.0022,
+            frizz: 0.002,
             strays: 0.03,
             thinning: 0.15,
             ..self
