@@ -138,11 +138,11 @@ impl Random {
     }
 }
 
-/// What a visitor does at random: hands, settings in and out of their range, sizes, files, frames and pictures.
+/// An action of a visitor at random: hands, settings in and out of their range, sizes, files, frames and pictures.
 fn act(page: &mut Page, random: &mut Random) {
     let place = Vec2::new(random.share(), random.share());
     let share = random.share();
-    // What is refused is refused by a message; the page goes on.
+    // A refusal is a message; the page goes on.
     let set = |page: &mut Page, key: &str, value: String| drop(page.set(key, &value));
     match random.below(100) {
         0..25 => page.frame().unwrap(),
