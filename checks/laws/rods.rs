@@ -3,7 +3,7 @@
 use glam::{Quat, Vec3};
 use strandline::{Prepared, Scene};
 use strandline_body::{Carrier, Collider, DistanceGrid, Mannequin, Motion, Pose, Shape};
-use strandline_checks::{On, Rig, law};
+use strandline_checks::{On, Rig, in_full, law};
 use strandline_groom::{Guides, LANES, Style, StyleSettings};
 use strandline_sim::{Drive, Model, Settings, State, StrandMethod};
 
@@ -74,8 +74,13 @@ pub fn stepped(on: &On, model: &Model, seconds: f32, motion: impl Fn(f64) -> Pos
     let drives: Vec<_> = (1..=(seconds / step).round() as u32).map(drive).collect();
     for report in rig.steps(&drives) {
         assert_eq!(report.non_finite, 0);
-        // Found on a software GPU: 0.16 % in seven of 720 steps of the tied ponytail, whose hair is held at both ends.
-        assert!(report.stretch_max < on.either(1e-3, 2e-3), "stretched by {}", report.stretch_max);
+        // Found on a software GPU: 0.16 % in seven of 720 steps of the tied ponytail, whose hair is held at both ends; the
+        // short form has no ponytail there.
+        assert!(
+            report.stretch_max < on.either(1e-3, if in_full() { 2e-3 } else { 1e-3 }),
+            "stretched by {}",
+            report.stretch_max
+        );
     }
     rig.state().clone()
 }

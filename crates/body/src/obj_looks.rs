@@ -45,7 +45,7 @@ fn looks(text: &[u8], folder: Option<&Path>, mesh: &Mesh, notes: &mut Vec<String
     if is_whole && materials.have_look() { materials.drawn(notes) } else { None }
 }
 
-/// Words of a line, the first of which is its kind.
+/// The lines of a text, without those that are no text.
 fn lines(text: &[u8]) -> impl Iterator<Item = &str> {
     text.split(|byte| *byte == b'\n').filter_map(|line| std::str::from_utf8(line).ok()).map(str::trim)
 }
@@ -82,6 +82,8 @@ struct Library {
     list: Vec<(Material, Paint)>,
     places: BTreeMap<String, usize>,
     textures: Textures,
+    /// Place of each picture among the textures, by its name: several materials may share one.
+    pictures: BTreeMap<String, Option<usize>>,
 }
 
 /// Scale and offset of the texture coordinates of a material.
@@ -98,7 +100,12 @@ impl Library {
         let mut names: Vec<&str> = lines(text).filter_map(|line| rest(line, "mtllib")).collect();
         names.sort_unstable();
         names.dedup();
-        let mut library = Self { list: Vec::new(), places: BTreeMap::new(), textures: Textures::default() };
+        let mut library = Self {
+            list: Vec::new(),
+            places: BTreeMap::new(),
+            textures: Textures::default(),
+            pictures: BTreeMap::new(),
+        };
         for name in names.into_iter().take(MOST_LIBRARIES) {
             let read = beside(folder, name, MTL_LIMIT).and_then(|bytes| {
                 tobj::load_mtl_buf(&mut &*bytes).map_err(|error| format!("an invalid line ({error})"))
@@ -151,9 +158,14 @@ impl Library {
     }
 
     fn texture(&mut self, name: &str, folder: &Path, notes: &mut Vec<String>) -> Option<usize> {
+        if let Some(known) = self.pictures.get(name) {
+            return *known;
+        }
         let quoted = format!("`{}`", shortened(name));
-        let texture = self.textures.read(&quoted, beside(folder, name, FILE_LIMIT), notes)?;
-        Some(self.textures.keep(quoted, texture, notes))
+        let texture = self.textures.read(&quoted, beside(folder, name, FILE_LIMIT), notes);
+        let place = texture.map(|texture| self.textures.keep(quoted, texture, notes));
+        self.pictures.insert(name.to_owned(), place);
+        place
     }
 
     /// The materials on the triangles of a file, in the order of its faces.

@@ -75,7 +75,24 @@ fn options_masks_and_paths_of_other_machines_are_read() {
     assert_eq!(materials.coordinates[0][2], Vec2::new(2.5, 1.0 - 3.25));
     let eye = &materials.list[materials.of_triangles[2] as usize];
     assert_eq!((eye.color, eye.cutoff), (Some(Vec4::new(1.0, 1.0, 1.0, 0.25)), Some(0.5)));
-    assert!(notes.iter().any(|note| note.contains("map")) == (notes.len() == 1), "{notes:?}");
+    // The mask is the picture under another name.
+    assert!(notes.len() == 1 && notes[0].contains("the mask `maps/two texels.png` of `skin`"), "{notes:?}");
+    assert_eq!(skin.cutoff, None);
+}
+
+#[test]
+fn materials_share_a_picture_and_a_mask_that_is_the_picture_cuts() {
+    let picture = "map_Kd maps/two texels.png\n";
+    let (mesh, notes) =
+        with_library(&format!("newmtl skin\n{picture}map_d maps/two texels.png\nnewmtl eye\n{picture}"));
+    let materials = materials(&mesh);
+    assert!(notes.is_empty() && materials.textures.len() == 1, "{notes:?}");
+    let of = |triangle: usize| &materials.list[materials.of_triangles[triangle] as usize];
+    assert_eq!([of(0).texture, of(2).texture], [Some(0); 2]);
+    assert_eq!([of(0).cutoff, of(2).cutoff], [Some(0.5), None]);
+    let none = "map_Kd none.png\n";
+    let (_, notes) = with_library(&format!("newmtl skin\n{none}newmtl eye\n{none}"));
+    assert_eq!(notes.len(), 1, "a picture is missed once: {notes:?}");
 }
 
 #[test]

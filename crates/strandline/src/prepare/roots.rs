@@ -31,8 +31,9 @@ fn brush(loading: &mut Loading) {
         let after = stroke.on(groom);
         if after == *groom {
             loading.notes.push(format!(
-                "strokes[{index}] changes nothing: no root lies within {} m of its position, or its strength is 0",
-                stroke.radius
+                "strokes[{index}] changes nothing: no root lies within {} m of its position, or `{}` finds nothing to do there",
+                stroke.radius,
+                stroke.tool.name()
             ));
         }
         *groom = after;
