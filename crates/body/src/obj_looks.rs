@@ -3,7 +3,7 @@
 //! All that is wrong with a look becomes a note: the shape is read all the same.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3, Vec4};
@@ -97,7 +97,11 @@ impl Library {
     /// Reads the .mtl files that an OBJ names; `None` without any.
     fn read(text: &[u8], folder: Option<&Path>, notes: &mut Vec<String>) -> Option<Self> {
         let folder = folder?;
-        let mut names: Vec<&str> = lines(text).filter_map(|line| rest(line, "mtllib")).collect();
+        // One name, which may hold spaces, or several.
+        let is_one = |line: &str| !line.contains(char::is_whitespace) || found(folder, line).is_some();
+        let of_line = |line| if is_one(line) { vec![line] } else { line.split_whitespace().collect() };
+        let mut names: Vec<&str> =
+            lines(text).filter_map(|line| rest(line, "mtllib")).flat_map(of_line).collect();
         names.sort_unstable();
         names.dedup();
         let mut library = Self {
@@ -255,13 +259,17 @@ fn most_values(option: &str) -> usize {
     }
 }
 
-/// The bytes of a file that another one names, below its folder; a path of another machine counts by its last name.
-fn beside(folder: &Path, name: &str, limit: u64) -> Result<Vec<u8>, String> {
+/// The file that another one names, below its folder; a path of another machine counts by its last name.
+fn found(folder: &Path, name: &str) -> Option<PathBuf> {
     let name = name.trim_matches('"').replace('\\', "/");
     let last = name.rsplit('/').next().unwrap_or_default();
-    let found = [name.as_str(), last].into_iter().filter_map(|name| file_below(folder, name));
-    let path = found.into_iter().find(|path| path.is_file());
-    let path = path.ok_or("no file beside the body, or in a folder there")?;
+    let mut named = [name.as_str(), last].into_iter().filter_map(|name| file_below(folder, name));
+    named.find(|path| path.is_file())
+}
+
+/// The bytes of such a file.
+fn beside(folder: &Path, name: &str, limit: u64) -> Result<Vec<u8>, String> {
+    let path = found(folder, name).ok_or("no file beside the body, or in a folder there")?;
     read_plain(&path, limit).map_err(|error| error.to_string())
 }
 

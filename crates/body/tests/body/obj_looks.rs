@@ -114,6 +114,11 @@ fn looks_that_are_missing_or_lie_elsewhere_become_notes_and_the_shape_is_read() 
     let (mesh, notes) = read(&below, &format!("mtllib body.mtl\n{SHAPE}"), mtl);
     assert!(notes[0].contains("none.png"), "{notes:?}");
     assert_eq!(materials(&mesh).list[0].color, Some(Vec4::new(0.5, 0.5, 0.5, 1.0)));
+    // Several libraries of a line.
+    std::fs::write(below.join("more.mtl"), "newmtl eye\nKd 0 1 0\n").unwrap();
+    let (mesh, notes) =
+        read(&below, &format!("mtllib body.mtl more.mtl\n{SHAPE}"), "newmtl skin\nKd 1 0 0\n");
+    assert!(notes.is_empty() && materials(&mesh).list.len() == 3, "{notes:?}");
     // A file without materials says nothing.
     assert!(read(&below, SHAPE, "").1.is_empty());
 }
