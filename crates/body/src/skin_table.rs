@@ -72,6 +72,15 @@ impl SkinTable {
     pub fn moving(&self) -> Option<usize> {
         self.skins.iter().find(|listed| listed.posed.is_some()).map(|listed| listed.header)
     }
+
+    /// Most way \[m\] of a vertex of any skin through the step for which the table was last written.
+    pub fn most_shift(&self) -> f32 {
+        self.skins
+            .iter()
+            .filter_map(|listed| listed.posed.as_ref())
+            .map(PosedSkin::most_shift)
+            .fold(0.0, f32::max)
+    }
 }
 
 /// First rows of the parts of a skin: its nodes, vertices, triangles, and the triangles around vertices.

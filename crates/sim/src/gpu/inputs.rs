@@ -107,7 +107,8 @@ mirror! {
         pub skin: u32,
         /// 1 where pressure acts against compression alone.
         pub one_sided: u32,
-        pub unused_c: u32,
+        /// Most way \[m\] of a vertex of a skin that moves by itself through the step.
+        pub skin_shift: f32,
         pub rods: RodStep,
         then solids: [u32; 4],
     }

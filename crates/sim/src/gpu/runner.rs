@@ -245,13 +245,13 @@ impl GpuRunner {
         self.prepare()?;
         self.grab.hand = drive.hand.unwrap_or(self.grab.hand);
         let bodies = [&self.body, &drive.body];
-        let skin = solids::write_skins(
+        let (skin, skin_shift) = solids::write_skins(
             (&self.buffers.step, &mut self.buffers.skins),
             &self.model.colliders,
             bodies,
         )?;
         let uniform = Step::new(&self.model, &self.body, &drive, &self.grab, self.pending.count);
-        self.buffers.step.write(&[Step { skin, ..uniform }])?;
+        self.buffers.step.write(&[Step { skin, skin_shift, ..uniform }])?;
         solids::write_pieces(&self.buffers.step, &self.model, bodies)?;
         self.buffers.write_roots(&self.model, bodies)?;
         if let Some(shelter) = self.buffers.shelter() {

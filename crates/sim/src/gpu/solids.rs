@@ -29,7 +29,7 @@ pub(super) fn write_pieces(
 }
 
 /// Brings the skins to a step between two frames of the body. Returns one more than the row of the header of one that
-/// moves by itself, 0 without one.
+/// moves by itself, 0 without one, and the most way \[m\] of a vertex.
 ///
 /// # Errors
 /// The device was lost.
@@ -37,7 +37,7 @@ pub(super) fn write_skins(
     (buffer, skins): (&Buffer<Step>, &mut SkinTable),
     colliders: &[Collider],
     [start, end]: [&BodyFrame; 2],
-) -> Result<u32, GpuError> {
+) -> Result<(u32, f32), GpuError> {
     let written = skins.between(start, end);
     if !written.is_empty() {
         let (all, [base, _]) = rows(buffer, colliders);
@@ -45,7 +45,8 @@ pub(super) fn write_skins(
             all.write_at(base + first, &rows)?;
         }
     }
-    Ok(skins.moving().map_or(0, |header| header as u32 + 1))
+    let header = skins.moving().map_or(0, |header| header as u32 + 1);
+    Ok((header, skins.most_shift()))
 }
 
 /// Room for the settings of a step, and behind it the pieces behind the head, then the rows of all colliders; the skins
