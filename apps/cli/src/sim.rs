@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use serde::Serialize;
 use strandline::file::counted;
 use strandline::mesh::Placement;
-use strandline::{Cache, Drift, Event, OutSettings, Player, Scene, StepReport, Stiffening, Written};
+use strandline::{
+    Cache, Drift, Event, Extent, Measures, OutSettings, Player, Scene, StepReport, Stiffening, Written,
+};
 
 use crate::arguments::SimOptions;
 use crate::interrupt::Stoppable;
@@ -28,6 +30,12 @@ pub struct SimReport {
     pub penetration_max_m: f32,
     pub drift: Spread,
     pub speed: Spread,
+    /// Force of the air on a guide over the guide's weight, at the end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub air: Option<Spread>,
+    /// Density around points over that at rest, at the end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub density: Option<Spread>,
     /// Strands of rods that had to be stiffer, and how many times stiffer the stiffest of them is.
     pub stiffened: usize,
     pub stiffest: f32,
@@ -67,6 +75,12 @@ pub struct Stretch {
 pub struct Spread {
     pub mean: f32,
     pub max: f32,
+}
+
+impl From<Extent> for Spread {
+    fn from(Extent { mean, max }: Extent) -> Self {
+        Self { mean, max }
+    }
 }
 
 /// Quality of the solve of rods.
@@ -118,6 +132,7 @@ pub struct Ended {
     pub strands: usize,
     pub points_per_strand: usize,
     pub drift: Drift,
+    pub measures: Measures,
     pub stiffening: Stiffening,
     pub placement: Placement,
     /// \[s\].
@@ -138,6 +153,7 @@ impl Ended {
             strands: guides.strand_count(),
             points_per_strand: guides.points_per_strand(),
             drift: player.drift()?,
+            measures: player.measures()?,
             stiffening: player.stiffening(),
             placement: player.placement(),
             time_step: scene.simulation.time_step,
@@ -189,6 +205,8 @@ impl Steps {
             stretch: Stretch { mean: mean(self.stretch), max: self.stretch_max },
             penetration_max_m: self.penetration_max,
             drift: Spread { mean: drift.mean, max: drift.max },
+            air: end.measures.air.map(Spread::from),
+            density: end.measures.density.map(Spread::from),
             speed: self.speed((1.0 / end.time_step).round() as usize),
             stiffened: end.stiffening.strands,
             stiffest: end.stiffening.most,
@@ -335,6 +353,12 @@ fn print(report: &SimReport) {
         100.0 * report.drift.max
     );
     print_line!("in the last second: mean {:.4} m/s, largest {:.3} m/s", report.speed.mean, report.speed.max);
+    if let Some(air) = &report.air {
+        print_line!("air: mean {:.2}, largest {:.2} of a guide's weight", air.mean, air.max);
+    }
+    if let Some(density) = &report.density {
+        print_line!("density over that at rest: mean {:.2}, largest {:.2}", density.mean, density.max);
+    }
     if let Some(rods) = &report.rods {
         print_line!(
             "rods: {} stiffened, up to {:.1} times, {} at rest, at most {} in a step not solved, residual {:.1e} rad",

@@ -86,6 +86,33 @@ pub struct StepReport {
     pub non_finite_strand: Option<usize>,
 }
 
+/// Mean and largest of a number.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Extent {
+    /// Mean.
+    pub mean: f32,
+    /// Largest.
+    pub max: f32,
+}
+
+impl Extent {
+    /// That of numbers; 0 without any.
+    pub(crate) fn of(numbers: Vec<f32>) -> Self {
+        let sum: f64 = numbers.iter().map(|number| f64::from(*number)).sum();
+        let max = numbers.iter().copied().fold(0.0, f32::max);
+        Self { mean: (sum / numbers.len().max(1) as f64) as f32, max }
+    }
+}
+
+/// Measures of hair at one moment.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Measures {
+    /// Force of the air on a guide over the guide's weight; none where the air takes hair along at a rate.
+    pub air: Option<Extent>,
+    /// Density around a point over that around it at rest; none without hair.
+    pub density: Option<Extent>,
+}
+
 /// Distance of points from their rest positions on the head, over the lengths of their strands.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Drift {

@@ -107,7 +107,7 @@ pub use prepare::{Prepared, Sources};
 pub use render::{Camera, Light, Look, Picture, PictureSettings};
 pub use scene::{Devices, HeadMotion, Scene};
 pub use session::{Change, Event, Ray, Touched};
-pub use sim::{Backend, Drift, Settings, SimError, StepReport, Stiffening};
+pub use sim::{Backend, Drift, Extent, Measures, Settings, SimError, StepReport, Stiffening};
 
 // Names of this crate's own modules.
 pub(crate) use strands::bound::BoundStrands;

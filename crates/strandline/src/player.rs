@@ -8,7 +8,7 @@ use crate::{
     scene::{camera_motion::CameraMotion, devices::device_name},
     session::worker::Worker,
     session::{Change, Event, Session, Simulation, Task, film_timing::FilmTiming},
-    sim::{Drift, Settings, State, Stiffening},
+    sim::{Drift, Measures, Settings, State, Stiffening},
 };
 
 /// Plays a scene: an iterator of events, frame after frame, until the film is over.
@@ -211,6 +211,14 @@ impl Player {
     /// As [`Player::state`].
     pub fn drift(&self) -> Result<Drift, Error> {
         Ok(self.session.peek(Simulation::drift)?)
+    }
+
+    /// Force of the air on the hair and its density, at the end of the last step.
+    ///
+    /// # Errors
+    /// As [`Player::state`].
+    pub fn measures(&self) -> Result<Measures, Error> {
+        Ok(self.session.peek(Simulation::measures)?)
     }
 
     /// Strands of rods that had to be stiffer for their shape to be stable.

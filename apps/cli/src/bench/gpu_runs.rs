@@ -86,6 +86,7 @@ impl Device {
             strands: guides.strand_count(),
             points_per_strand: guides.points_per_strand(),
             drift: plain.drift(&runner.state()?),
+            measures: strandline::Measures::default(),
             stiffening: plain.stiffening(),
             time_step: scene.simulation.time_step,
             tolerance: scene.simulation.volume.tolerance,

@@ -7,6 +7,7 @@ pub mod faces;
 pub mod gather;
 pub mod integrate;
 pub mod mark;
+mod measures;
 mod packing;
 pub mod pcg;
 pub mod poisson;

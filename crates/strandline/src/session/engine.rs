@@ -9,7 +9,7 @@ use crate::{
     body::BodyFrame,
     groom::Vec3Lanes,
     render::gpu::DeviceSolids,
-    sim::{Checkpoint, Drift, Drive, Model, Settings, SimError, Simulator, State, StepReport},
+    sim::{Checkpoint, Drift, Drive, Measures, Model, Settings, SimError, Simulator, State, StepReport},
     strands::hair_pose::HairPose,
 };
 
@@ -95,6 +95,12 @@ impl Engine {
     pub fn drift(&mut self) -> Result<Drift, SimError> {
         self.state()?;
         Ok(self.model().drift(self.simulator.last_state()))
+    }
+
+    /// Measures of the hair in the air of a drive; a device is waited for.
+    pub fn measures(&mut self, drive: &Drive) -> Result<Measures, SimError> {
+        self.state()?;
+        Ok(self.model().measures(self.simulator.last_state(), drive))
     }
 
     pub fn take_notes(&mut self) -> Vec<String> {

@@ -17,7 +17,7 @@ use crate::{
     cache::Snapshot,
     groom::Vec3Lanes,
     scene::Air,
-    sim::{Clock, Drift, Drive, Settings, SimError, State, StepReport, Stiffening, Ticks},
+    sim::{Clock, Drift, Drive, Measures, Settings, SimError, State, StepReport, Stiffening, Ticks},
     strands::hair_pose::HairPose,
 };
 
@@ -51,6 +51,8 @@ pub(crate) struct Simulation {
     /// Body at the last two states, and at the end of the last run.
     pub(super) bodies: [BodyFrame; 2],
     pub(super) end: BodyFrame,
+    /// What drove the last step.
+    last: Drive,
     /// Time \[s\] of all runs that went well.
     pub passed: f64,
     /// Origin of all places here \[m\], world space, in whole metres: single precision is exact beside it. Places in the
@@ -75,6 +77,7 @@ impl Simulation {
             exact: None,
             bodies: [BodyFrame::REST, BodyFrame::REST],
             end: BodyFrame::REST,
+            last: Drive::default(),
             passed: 0.0,
             origin: Vec3::ZERO,
             hand: None,
@@ -122,6 +125,11 @@ impl Simulation {
     /// Distance of the hair from the groom as loaded, which the head carries.
     pub fn drift(&mut self) -> Result<Drift, SimError> {
         self.engine.drift()
+    }
+
+    /// Measures of the hair in the air of the last step.
+    pub fn measures(&mut self) -> Result<Measures, SimError> {
+        self.engine.measures(&self.last)
     }
 
     /// Strands of rods that had to be stiffer for their shape to be stable.
@@ -307,6 +315,9 @@ impl Simulation {
             Ok((drives, reports))
         });
         let (drives, reports) = outcome.inspect_err(|_| self.clock = before)?;
+        if let Some(last) = drives.last() {
+            self.last = last.clone();
+        }
         for Drive { body, .. } in drives {
             self.bodies.swap(0, 1);
             self.bodies[1] = body;
