@@ -24,6 +24,8 @@ fn sagging() -> Settings {
     let mut settings = Settings { damping: 12.0, ..Settings::default() };
     settings.strands.rods.rest = Rest::Unstressed;
     settings.volume.enabled = false;
+    // The force of the air goes by the thickness of a wisp.
+    settings.drag.factor = 0.0;
     settings
 }
 

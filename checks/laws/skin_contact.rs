@@ -261,8 +261,9 @@ fn fastest(skin: impl Fn(f32, Vec3) -> Vec3) -> f32 {
     let grid = DistanceGrid::of_mesh(&mesh, 0.005, 0.02).unwrap();
     let shape = Shape::Skin(Arc::new(SkinSolid::new(&mesh, grid.into()).unwrap()));
     let solid = Collider::new(shape, Carrier::HEAD, 0.3).unwrap();
-    let model =
-        Model::new(&guides, &Settings { time_step: STEP, ..Settings::default() }, vec![solid]).unwrap();
+    let mut settings = Settings { time_step: STEP, ..Settings::default() };
+    settings.drag.hairs = Some(50.0);
+    let model = Model::new(&guides, &settings, vec![solid]).unwrap();
     let roots: Vec<Vec3> = (0..guides.strand_count()).map(|strand| guides.position(strand, 0)).collect();
     let roots = SkinRoots::new(&mesh, &roots);
     let mut state = model.rest_state(BodyFrame::REST);

@@ -194,7 +194,7 @@ fn a_loss_after_changes_gives_what_comes_without_one() {
             for (run, drives) in runs().enumerate() {
                 let mut settings = simulator.model().settings().clone();
                 settings.gravity.x = run as f32;
-                settings.drag.across = 1.0 + run as f32;
+                settings.drag.factor = 1.0 + run as f32;
                 simulator.set_settings(&settings).unwrap();
                 simulator.set_length_scale(&scales(head, run)).unwrap();
                 if run == failing {
@@ -311,7 +311,7 @@ fn a_change_of_settings_waits_for_nothing_and_uploads_what_it_changes() {
         assert!(gravity.contains(&moved), "{}: {moved} bytes for gravity", head.name);
         for change in [
             |settings: &mut Settings| settings.damping = 2.0,
-            |settings: &mut Settings| settings.drag.across = 2.0,
+            |settings: &mut Settings| settings.drag.factor = 2.0,
             |settings: &mut Settings| settings.volume.flip_share = 0.5,
             |settings: &mut Settings| settings.volume.preconditioner = Preconditioner::Jacobi,
             |settings: &mut Settings| settings.volume.enabled = false,

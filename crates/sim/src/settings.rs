@@ -148,9 +148,10 @@ choices! {
 settings! {
     /// Drag of the air.
     ///
-    /// Hair takes the velocity of the wind at two rates, `across` and `along` the strand. With `factor` rods feel the force of
-    /// a flow on a cylinder as thin as their hair instead [Cheng2013, Collis1959]; that of a wisp is at most the force on a
-    /// cylinder as thick as the wisp. Hair and solids take the wind from the hair behind them (`shelter`).
+    /// Rods feel the force of a flow on a cylinder as thin as their hair [Cheng2013, Collis1959]; that of a wisp is at most the
+    /// force on a cylinder as thick as the wisp. Hair and solids take the wind from the hair behind them (`shelter`). Without
+    /// `factor` hair takes the velocity of the wind at two rates, `across` and `along` the strand, as strands of springs and
+    /// constraints do. A file that gives a rate and no `factor` has a `factor` of 0.
     pub struct Drag: Copy {
         /// Rate at which hair takes the velocity of wind across the strand.
         across: f32 = 1.5, in [0.0, 1000.0] "1/s", slider [0.0, 20.0],
@@ -158,8 +159,8 @@ settings! {
         /// Rate at which hair takes the velocity of wind along the strand.
         along: f32 = 0.75, in [0.0, 1000.0] "1/s", slider [0.0, 20.0],
             more "hair that follows the wind sooner and falls more slowly";
-        /// Force of the air on rods over that of physics: 1 is physics, and stands for both rates. 0 leaves the rates.
-        factor: f32 = 0.0, in [0.0, 1000.0], slider [0.0, 5.0],
+        /// Force of the air on rods over that of physics: 1 is physics. 0 leaves the two rates in its place.
+        factor: f32 = 1.0, in [0.0, 1000.0], slider [0.0, 5.0],
             more "rods that follow the wind sooner and swing less in still air", invalidates stages;
         /// Under `factor`: hair and solids hold back the wind from the hair behind them, and the air in a lock moves along
         /// with it.
@@ -169,11 +170,19 @@ settings! {
         hairs: Option<f32> = None, in [1.0, 1e6], slider [1.0, 200.0],
             more "wisps that the air moves less, which swing longer";
     }
+    prepare Drag::prepare;
 }
 
 impl Drag {
     /// No air.
     pub const OFF: Self = Self { across: 0.0, along: 0.0, factor: 0.0, shelter: true, hairs: None };
+
+    /// A rate that is given would do nothing beside the force.
+    fn prepare(&mut self, given: &<Self as Value>::Given) {
+        if given.across.is_some() || given.along.is_some() {
+            self.factor = 0.0;
+        }
+    }
 
     /// The rates of rods, across and along: none where they feel the force of physics.
     pub(crate) fn rates_of_rods(&self) -> [f32; 2] {

@@ -241,7 +241,7 @@ fn settings_that_change_in_every_frame_wait_for_nothing() {
     for frame in 0..8_u8 {
         let mut settings = hair.settings().clone();
         settings.gravity.y = -9.0 + f32::from(frame);
-        settings.drag.across = 1.0 + f32::from(frame);
+        settings.drag.factor = 1.0 + f32::from(frame);
         settings.strands.rods.youngs_modulus = 3.0 + f32::from(frame);
         hair.set_settings(&settings).unwrap();
         hair.step(1.0 / 60.0, Pose::IDENTITY).unwrap();
