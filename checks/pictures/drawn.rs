@@ -127,7 +127,12 @@ impl Drawn {
     }
 
     /// The same on a body.
-    pub fn on_body(&self, on: &On, settings: &PictureSettings, body: Option<&Mesh>) -> (Picture, FrameReport) {
+    pub fn on_body(
+        &self,
+        on: &On,
+        settings: &PictureSettings,
+        body: Option<&Mesh>,
+    ) -> (Picture, FrameReport) {
         self.input(&self.guides, |input| match on {
             On::Cpu => Renderer::new(&self.guides, body, settings).unwrap().draw(input).unwrap(),
             On::Gpu(gpu) => GpuRenderer::new(gpu, &self.guides, body, settings).unwrap().draw(input).unwrap(),

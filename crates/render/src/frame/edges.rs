@@ -61,8 +61,7 @@ impl<'a> Edges<'a> {
     fn blended(self, tile: usize) -> impl Iterator<Item = (usize, Vec4)> + 'a {
         let columns = self.samples.tile_columns();
         let (left, top) = (tile % columns * TILE, tile / columns * TILE);
-        let (right, end) =
-            ((left + TILE).min(self.samples.width()), (top + TILE).min(self.samples.height()));
+        let (right, end) = ((left + TILE).min(self.samples.width()), (top + TILE).min(self.samples.height()));
         (top..end).flat_map(move |row| (left..right).map(move |column| (column, row))).filter_map(
             move |(column, row)| {
                 let (share, beyond) = self.beyond(column as i32, row as i32)?;

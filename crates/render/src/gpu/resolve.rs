@@ -46,7 +46,7 @@ impl ToFormat {
     }
 }
 
-/// What the stage reads.
+/// Buffers that the stage reads.
 fn buffers<'a>(groom: &'a Groom, targets: &'a Targets) -> Resolve<'a> {
     Resolve { frame: &groom.frame, depths: &targets.depth, samples: &targets.samples }
 }
