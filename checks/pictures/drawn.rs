@@ -1,7 +1,7 @@
 //! A few guides drawn on either backend: the light that each point sends to the eye, and whole pictures.
 
 use glam::Vec3;
-use strandline_body::{BodyFrame, Pose};
+use strandline_body::{BodyFrame, Mesh, Pose};
 use strandline_checks::On;
 use strandline_groom::{Groom, Guides};
 use strandline_render::cpu::{
@@ -123,9 +123,19 @@ impl Drawn {
 
     /// The whole picture, and its drawn strands.
     pub fn reported(&self, on: &On, settings: &PictureSettings) -> (Picture, FrameReport) {
+        self.on_body(on, settings, None)
+    }
+
+    /// The same on a body.
+    pub fn on_body(
+        &self,
+        on: &On,
+        settings: &PictureSettings,
+        body: Option<&Mesh>,
+    ) -> (Picture, FrameReport) {
         self.input(&self.guides, |input| match on {
-            On::Cpu => Renderer::new(&self.guides, None, settings).unwrap().draw(input).unwrap(),
-            On::Gpu(gpu) => GpuRenderer::new(gpu, &self.guides, None, settings).unwrap().draw(input).unwrap(),
+            On::Cpu => Renderer::new(&self.guides, body, settings).unwrap().draw(input).unwrap(),
+            On::Gpu(gpu) => GpuRenderer::new(gpu, &self.guides, body, settings).unwrap().draw(input).unwrap(),
         })
     }
 

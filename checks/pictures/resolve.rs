@@ -1,8 +1,9 @@
 //! `resolve` on both backends: samples become the 8 bits of a picture.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
+use strandline_body::Mesh;
 use strandline_checks::law;
-use strandline_render::{Background, Environment, LevelOfDetail, Look, PictureSettings, ToneMap};
+use strandline_render::{Background, Camera, Environment, LevelOfDetail, Look, PictureSettings, ToneMap};
 
 use crate::drawn::{Drawn, guides};
 use crate::terms::plain;
@@ -94,6 +95,42 @@ law! {
             // No hair is near the corner. Light is rounded by a quarter of a step at most, in half floats or a table.
             assert_eq!(picture.pixels[..3], bytes, "{light}");
         }
+    }
+}
+
+law! {
+    fn edges_of_a_body_cover_samples_by_share(on) {
+        // Seven straight edges before the eye, of as many slopes; hair behind the eye.
+        let hair = vec![Vec3::Z, Vec3::new(0.0, 0.01, 1.0)];
+        let drawn = Drawn { guides: guides([hair], 4), ..crossing(Vec3::ZERO) };
+        let corners: Vec<Vec3> = (0..7)
+            .map(|corner| {
+                let (sine, cosine) = (0.13 + corner as f32 * std::f32::consts::TAU / 7.0).sin_cos();
+                0.02 * Vec3::new(sine, cosine, 0.0)
+            })
+            .collect();
+        let fan = (1..6).map(|last| [0, last, last + 1]).collect();
+        let body = Mesh::new(corners.clone(), fan).unwrap();
+        let found = drawn.on_body(on, &transparent(SIZE, 1), Some(&body)).0.alpha.unwrap();
+        let scale = 0.5 * SIZE as f32 * Camera::front().focal() / drawn.eye.z;
+        let place = |at: usize, part: usize| (at as f32 + (part as f32 + 0.5) / 16.0 - 0.5 * SIZE as f32) / scale;
+        let is_inside = |x: f32, y: f32| {
+            let edges = corners.iter().zip(corners.iter().cycle().skip(1));
+            edges.map(|(a, b)| (*b - *a).truncate().perp_dot(Vec2::new(x, y) - a.truncate())).all(|side| side < 0.0)
+        };
+        let (mut sum, mut stepped, mut count) = (0.0, 0.0, 0.0);
+        for (pixel, &alpha) in found.iter().enumerate() {
+            let (column, row) = (pixel % SIZE as usize, pixel / SIZE as usize);
+            let shown = (0..256).filter(|part| is_inside(place(column, part % 16), -place(row, part / 16)));
+            let share = shown.count() as f32 / 256.0;
+            if share > 0.0 && share < 1.0 {
+                sum += (f32::from(alpha) / 255.0 - share).powi(2);
+                stepped += (share.round() - share).powi(2);
+                count += 1.0;
+            }
+        }
+        let [error, stepped] = [sum, stepped].map(|sum: f32| (sum / count).sqrt());
+        assert!(count > 60.0 && error < 0.12 && error < 0.45 * stepped, "{count}: {error} {stepped}");
     }
 }
 

@@ -59,11 +59,11 @@ impl BustShape {
             muscle: cone(vec3(0.0462, -0.0499, -0.0037), vec3(0.0045, -0.1930, 0.0050), [0.0081, -0.0010]),
             muscle_reach: 0.0180,
             collar_bone: cone(
-                vec3(0.0150, -0.2080, 0.0165),
-                vec3(0.1080 * aside, -0.2035, -0.0270),
-                [0.0050, 0.0026],
+                vec3(0.0200, -0.2115, 0.0075),
+                vec3(0.1080 * aside, -0.2060, -0.0320),
+                [0.0090, 0.0060],
             ),
-            collar_bone_reach: 0.0120,
+            collar_bone_reach: 0.0300,
             throat: throat(),
             ear: ear(),
             masses: masses(breadth),
@@ -166,8 +166,8 @@ fn masses(breadth: f32) -> [Swelling; MASS_COUNT] {
 /// Hollows of the throat: between the collar bones, above them, and the larynx.
 fn throat() -> [Swelling; THROAT_COUNT] {
     [
-        swelling(vec3(0.0000, -0.2030, 0.0220), vec3(0.0210, 0.0200, 0.0280), -0.0026, 0.0),
-        swelling(vec3(0.0550, -0.1870, -0.0080), vec3(0.0440, 0.0230, 0.0340), -0.0024, 0.0),
+        swelling(vec3(0.0000, -0.1990, 0.0200), vec3(0.0290, 0.0280, 0.0340), -0.0022, 0.0),
+        swelling(vec3(0.0550, -0.1870, -0.0080), vec3(0.0460, 0.0280, 0.0380), -0.0008, 0.0),
         swelling(vec3(0.0000, -0.1480, 0.0260), vec3(0.0130, 0.0210, 0.0200), 0.0010, 0.0),
     ]
 }

@@ -16,6 +16,9 @@ const JAW: Vec3 = Vec3::new(0.0, -0.060, 0.010);
 /// Inner and outer end of a brow on the side of positive x, half its breadth, and the height of its arch \[m\].
 const BROW: ([Vec2; 2], f32, f32) = ([Vec2::new(0.013, 0.000), Vec2::new(0.052, 0.001)], 0.0042, 0.0065);
 
+/// Height \[m\] by which the border of a beard on the cheek is uneven.
+const UNEVEN: f32 = 0.0016;
+
 /// Grows strands of the face from `first` on.
 pub(super) fn strands(
     settings: &StyleSettings,
@@ -116,11 +119,18 @@ fn skin(mannequin: &Mannequin, start: Vec3, way: Vec3) -> Option<Vec3> {
 /// Density of a beard at a place of the face \[m\], 0 to 1.
 fn bearded(place: Vec3, normal: Vec3) -> f32 {
     let aside = place.x.abs();
-    // From below the nose over the corner of the mouth and the cheek to the ear.
-    let upper = if aside < 0.028 { -0.0605 } else { -0.066 + 0.040 * smooth(0.030, 0.068, aside) };
+    // From below the nose over the corner of the mouth and the cheek to the ear; no two centimetres of it are alike.
+    let cheek = smooth(0.030, 0.068, aside);
+    let uneven =
+        math::sin(310.0 * place.x + 170.0 * place.z) + 0.6 * math::sin(730.0 * place.x - 520.0 * place.z);
+    let upper = if aside < 0.028 { -0.0605 } else { -0.066 + 0.040 * cheek } + UNEVEN * cheek * uneven;
     let lips = Vec2::new(place.x / 0.026, (place.y + 0.0785) / 0.0085).length();
     let free = smooth(0.9, 1.25, lips);
     let above_neck = smooth(-0.136, -0.114, place.y) * smooth(-0.97, -0.80, normal.y);
     let before_ear = smooth(-0.004, 0.024, place.z);
-    smooth(upper + 0.004, upper - 0.010, place.y) * free * above_neck * before_ear
+    // Hair hides skin long before it is dense: most of the border is thin.
+    let border = smooth(upper + 0.004 + 0.008 * cheek, upper - 0.010 - 0.006 * cheek, place.y)
+        * above_neck
+        * before_ear;
+    border * border * free
 }

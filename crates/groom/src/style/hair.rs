@@ -7,10 +7,10 @@ use strandline_base::math;
 use strandline_base::par::prelude::*;
 use strandline_body::{Mannequin, Random, Root, Scalp};
 
-use super::StyleSettings;
 use super::comb::{WHORL, smooth};
 use super::near::Near;
-use super::strand::{Strand, beside_parting};
+use super::strand::{Strand, nearer};
+use super::{Style, StyleSettings};
 
 /// Guides that a strand runs with at most.
 const WITH: usize = 3;
@@ -22,6 +22,8 @@ const PARTED: f32 = 0.045;
 const CROSSING: (f32, f32) = (0.05, 0.010);
 /// Amplitude \[m\] by which a parting wanders.
 const WANDER: f32 = 0.0022;
+/// Distance \[m\] from the whorl within which strands lie across it, and how far aside they follow other guides \[m\].
+const ACROSS_WHORL: (f32, f32) = (0.020, 0.012);
 /// Height of a strand above the skin beside its root over that of the guides, and the way \[m\] along which it
 /// reaches theirs.
 const FLAT: (f32, f32) = (0.65, 0.03);
@@ -55,7 +57,7 @@ pub(super) fn between(
         .into_par_iter()
         .enumerate()
         .map(|(index, (root, density))| {
-            let root = beside_parting(settings, mannequin, root);
+            let root = nearer(settings, mannequin, root);
             let (strand, guide) = beside(settings, guides, &near, root, index);
             Between { strand, guide, density }
         })
@@ -104,7 +106,8 @@ fn beside(
     let parted =
         if settings.style.is_parted() { smooth(WHORL.z, WHORL.z + 0.03, root.position.z) } else { 0.0 };
     let other_side = |guide: usize| if guides[guide].side == side { 0.0 } else { OTHER_SIDE * parted };
-    let found = near.nearest::<WITH>(root.position, other_side);
+    let led = root.position + across_whorl(settings, &root, index);
+    let found = near.nearest::<WITH>(led, other_side);
     let first = &guides[found[0].0];
     let weight = |(guide, distance): (usize, f32)| {
         let apart = |one: &Vec3, two: &Vec3| one.distance_squared(*two) > PARTED * PARTED;
@@ -132,6 +135,19 @@ fn beside(
     points[0] = root.position;
     lay_flat(&mut points, root.normal);
     (Strand { root, side, points }, found[0].0)
+}
+
+/// Distance \[m\] of the guides that a strand follows from its root: strands about the whorl lie over each other, so that
+/// none is bare.
+fn across_whorl(settings: &StyleSettings, root: &Root, index: usize) -> Vec3 {
+    let near = smooth(ACROSS_WHORL.0, 0.0, root.position.distance(WHORL));
+    if near == 0.0 || settings.style.is_tied() || settings.style == Style::Afro {
+        return Vec3::ZERO;
+    }
+    let mut random = Random::new(settings.seed, 13_000_000_000 + index as u64);
+    let way = math::unit_at(TAU * random.unit()) * (near * random.unit().sqrt() * ACROSS_WHORL.1);
+    let [first, second] = root.normal.any_orthonormal_pair().into();
+    first * way.x + second * way.y
 }
 
 /// Side to which a strand falls: the parting wanders, and some strands cross it.

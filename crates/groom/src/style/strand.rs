@@ -1,17 +1,23 @@
 //! Strands while they are shaped, and where they may be.
 
 use glam::Vec3;
+use strandline_base::math;
 use strandline_body::{Mannequin, Root, SignedDistance};
 
-use super::StyleSettings;
+use super::comb::WHORL;
+use super::{Style, StyleSettings};
 
 /// Distance \[m\] from the skin that all hair keeps once it has left the root.
 pub const CLEARANCE: f32 = 0.0015;
 
 /// Diameter of a hair \[m\].
 pub const WIDTH: f32 = 8e-5;
-/// Distance \[m\] from the parting within which roots are drawn toward it.
-const PARTING_REACH: f32 = 0.014;
+/// Distance \[m\] from the parting within which roots of guides are drawn toward it, and those of the hair between them:
+/// skin shows where few hairs come from between it and the parting.
+const PARTING_REACH: [f32; 2] = [0.014, 0.040];
+/// Distance \[m\] from the whorl within which roots of hair between guides are drawn toward it, and the power of their
+/// share of it.
+const WHORL_REACH: (f32, f32) = (0.050, 1.7);
 
 /// A strand with the inputs of its shaping.
 pub struct Strand {
@@ -35,15 +41,44 @@ pub fn outside(mannequin: &Mannequin, mut point: Vec3, clearance: f32) -> Vec3 {
     point
 }
 
-/// Draws roots near the parting toward it, so that it is a line and not a lane.
+/// Draws a guide's root near the parting toward it, so that it is a line and not a lane.
 pub fn beside_parting(settings: &StyleSettings, mannequin: &Mannequin, root: Root) -> Root {
+    toward_parting(settings, mannequin, root, PARTING_REACH[0], f32::sqrt)
+}
+
+/// Draws the root of hair between guides toward the parting or the whorl that it runs from: at a distance from there
+/// only the hair that is rooted nearer lies over the skin.
+pub fn nearer(settings: &StyleSettings, mannequin: &Mannequin, root: Root) -> Root {
+    if settings.style == Style::Pixie {
+        let (reach, power) = WHORL_REACH;
+        let way = root.position - WHORL;
+        let share = way.length() / reach;
+        return if share < 1.0 {
+            moved(mannequin, root, WHORL + way * math::powf(share, power - 1.0))
+        } else {
+            root
+        };
+    }
+    toward_parting(settings, mannequin, root, PARTING_REACH[1], |share| share)
+}
+
+fn toward_parting(
+    settings: &StyleSettings,
+    mannequin: &Mannequin,
+    root: Root,
+    reach: f32,
+    drawn: impl Fn(f32) -> f32,
+) -> Root {
     let across = root.position.x - settings.parting;
-    let share = across.abs() / PARTING_REACH;
+    let share = across.abs() / reach;
     if !settings.style.is_parted() || share >= 1.0 || root.position.y < 0.0 {
         return root;
     }
-    let mut drawn = root.position;
-    drawn.x = settings.parting + across * share.sqrt();
-    let (position, normal) = mannequin.nearest_skin(drawn);
+    moved(mannequin, root, root.position.with_x(settings.parting + across * drawn(share)))
+}
+
+/// A root at the skin's place nearest to another \[m\].
+fn moved(mannequin: &Mannequin, root: Root, place: Vec3) -> Root {
+    let (position, normal) = mannequin.nearest_skin(place);
     Root { position, normal, ..root }
 }

@@ -11,6 +11,7 @@ use super::{
     Shading, interpolate, keep_outside, layer_colors, opacity_depth, opacity_layers, tessellate,
 };
 use crate::fibre::FibreModel;
+use crate::frame::edges::smooth_edges;
 use crate::frame::samples::Samples;
 use crate::frame::{Stage, bounds};
 use crate::scatter::source::OwnColors;
@@ -102,7 +103,10 @@ impl Frame<'_> {
             Stage::Draw => self.draw(),
             Stage::Resolve => {
                 let Scratch { resolve, samples, .. } = &mut *self.scratch;
-                picture.iter_mut().for_each(|picture| resolve.resolve(samples, settings, picture));
+                if let Some(picture) = picture {
+                    smooth_edges(samples);
+                    resolve.resolve(samples, settings, picture);
+                }
             }
         }
     }

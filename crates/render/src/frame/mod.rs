@@ -1,6 +1,7 @@
 //! A picture as a list of stages, the same on both backends [Chen2011 §3].
 
 pub(crate) mod channels;
+pub(crate) mod edges;
 pub(crate) mod filter;
 mod input;
 pub(crate) mod known;

@@ -9,6 +9,7 @@ use super::frame::samples;
 use super::half::{from_half, to_half};
 use super::inputs::Frame;
 use super::shade::Numbers;
+use crate::frame::edges::smooth_edges;
 use crate::frame::filter::resolve_linear;
 use crate::frame::known::{body_depths, nearest_strands};
 use crate::frame::motion::{Before, Motion};
@@ -37,8 +38,9 @@ impl GpuRenderer {
             (settings.height * settings.supersampling) as usize,
         );
         self.read_light(&mut found)?;
-        let light = resolve_linear(&found, &settings);
         self.read_depths(input.camera.near, &mut found)?;
+        smooth_edges(&mut found);
+        let light = resolve_linear(&found, &settings);
         let bodies = body_depths(&found, scale);
         let drawn = self.strands()?;
         let strands = nearest_strands(&drawn, input.camera, &found, scale);

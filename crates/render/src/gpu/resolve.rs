@@ -11,6 +11,7 @@ drawing! {
     pub(super) struct Resolve in "resolve" (super::linked::RESOLVE),
     vertex "resolve_vertex", fragment Some("resolve"), {
         0 frame: Read Frame,
+        2 depths: Texture f32,
         7 samples: Texture f32,
     }
 }
@@ -35,14 +36,19 @@ impl ToFormat {
         let output = Output { color: Some((format, None)), depth: None };
         let linear = if format.is_srgb() { 1.0 } else { 0.0 };
         let drawing = Drawing::new(gpu, &output, &[("LINEAR", linear)])?;
-        let bound = drawing.bind(gpu, &Resolve { frame: &groom.frame, samples: &targets.samples })?;
+        let bound = drawing.bind(gpu, &buffers(groom, targets))?;
         Ok(Self { format, drawing, bound })
     }
 
     /// Binds the stage to other samples.
     pub fn bind(&self, gpu: &Gpu, groom: &Groom, targets: &Targets) -> Result<BoundDrawing, GpuError> {
-        self.drawing.bind(gpu, &Resolve { frame: &groom.frame, samples: &targets.samples })
+        self.drawing.bind(gpu, &buffers(groom, targets))
     }
+}
+
+/// Buffers that the stage reads.
+fn buffers<'a>(groom: &'a Groom, targets: &'a Targets) -> Resolve<'a> {
+    Resolve { frame: &groom.frame, depths: &targets.depth, samples: &targets.samples }
 }
 
 /// A picture on the device and its way back.
