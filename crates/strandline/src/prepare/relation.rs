@@ -46,7 +46,7 @@ const MOST_ROOTS: f32 = 0.8;
 /// Every n-th strand that is tried with all units, and axes that are then tried with finer ones.
 const FEWER: usize = 4;
 const AXES: usize = 6;
-/// How near a scale found by fitting must be to a unit to be taken for it.
+/// Deviation from a unit up to which a scale found by fitting is taken for it.
 const ALIKE: f32 = 0.015;
 /// Sizes of hair over that of its body's unit in which it is of another head and of no other unit.
 const OTHER_HEADS: std::ops::Range<f32> = 0.75..1.33;
