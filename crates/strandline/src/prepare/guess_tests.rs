@@ -192,3 +192,28 @@ fn files_of_one_groom_are_placed_together() {
     assert_eq!(parts.body.turn, whole.body.turn);
     assert!((parts.body.scale / whole.body.scale - 1.0).abs() < 0.06);
 }
+
+#[test]
+fn hair_a_little_too_large_for_a_head_has_no_unit_of_its_own() {
+    let mesh = crate::body::Mannequin::new().mesh();
+    let style = crate::groom::StyleSettings {
+        strand_count: 300,
+        ..crate::groom::StyleSettings::new(crate::groom::Style::Long)
+    };
+    let mut groom = style.grow().unwrap();
+    groom.transform(1.0 / 0.86, Quat::IDENTITY, Vec3::ZERO);
+    let found = of_files(&scene(), &[&groom], Some(&mesh), Defined::Nothing);
+    assert!(found.groom.scale == 1.0, "{:?} {:?}", found.groom, found.notes);
+}
+
+#[test]
+fn a_beard_with_y_up_on_a_head_with_y_down_is_never_surely_behind_the_face() {
+    let mesh = crate::body::Mannequin::new().mesh();
+    let beard = super::super::axes_tests::patch(&mesh, 0.08, Vec3::new(0.0, -2.0, 0.2), |place| {
+        place.z > 0.05 && place.y < -0.075 && place.y > -0.14
+    });
+    let (_, body) = turned(&beard, &mesh, 1.0, Up::MinusY.rotation());
+    let found = of_files(&scene(), &[&beard], Some(&body), Defined::Nothing);
+    let is_own = found.groom.turn.angle_between(Quat::IDENTITY) < 0.01;
+    assert!(is_own || found.refusal.is_some(), "{:?} {:?}", found.groom, found.notes);
+}

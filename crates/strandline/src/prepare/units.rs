@@ -39,3 +39,16 @@ fn as_written(scale: f32) -> f32 {
     let digits = math::powf(10.0, 1.0 - math::log10(scale).floor());
     (scale * digits).round() / digits
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_of_a_head_are_usual_ones_then_others_then_what_makes_it_a_person() {
+        assert_eq!(unit_of_width(15.0), (0.01, None));
+        assert_eq!(unit_of_width(0.51), (0.3048, None));
+        assert_eq!(unit_of_width(1.5), (0.1, None));
+        assert_eq!(unit_of_width(3.2), (0.047, Some(3.2)), "two digits, as they are written");
+    }
+}
