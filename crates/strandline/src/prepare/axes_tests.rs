@@ -210,7 +210,7 @@ fn hair_of_another_head_in_any_axes_hangs_from_this_one() {
 }
 
 /// Balls of some radii at some places, as one mesh.
-fn balls(parts: &[(Vec3, Vec3)]) -> Mesh {
+pub(super) fn balls(parts: &[(Vec3, Vec3)]) -> Mesh {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     let (rings, steps) = (16, 24);
     for (middle, radii) in parts {

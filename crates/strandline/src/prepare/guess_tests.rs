@@ -217,3 +217,27 @@ fn a_beard_with_y_up_on_a_head_with_y_down_is_never_surely_behind_the_face() {
     let is_own = found.groom.turn.angle_between(Quat::IDENTITY) < 0.01;
     assert!(is_own || found.refusal.is_some(), "{:?} {:?}", found.groom, found.notes);
 }
+
+#[test]
+fn a_beard_that_fits_both_sides_of_a_round_head_with_y_down_is_refused() {
+    let at = |y: f32, z: f32| Vec3::new(0.0, y, z);
+    let parts = [
+        (Vec3::ZERO, Vec3::new(0.078, 0.105, 0.098)),
+        (at(-0.015, 0.096), Vec3::new(0.013, 0.02, 0.02)),
+        (at(-0.12, -0.02), Vec3::new(0.055, 0.08, 0.055)),
+        (at(-0.24, -0.02), Vec3::new(0.2, 0.07, 0.1)),
+    ];
+    let mesh = super::super::axes_tests::balls(&parts);
+    let mut beard = Groom::empty(8e-5);
+    let is_chin =
+        |place: &Vec3| place.length() < 0.11 && (-0.075..-0.04).contains(&place.y) && place.z > 0.03;
+    for place in crate::prepare::sample::surface(&mesh, 4000).into_iter().filter(is_chin) {
+        beard.push([place, place + Vec3::new(0.0, -0.03, 0.02)]);
+    }
+    let (own, body) = turned(&beard, &mesh, 1.0, Up::MinusY.rotation());
+    let found = of_files(&scene(), &[&beard], Some(&body), Defined::Nothing);
+    let refusal = found.refusal.unwrap_or_default();
+    assert!(refusal.contains("`--up -y` and `--up y`"), "{refusal} {:?} {:?}", found.groom, found.notes);
+    let found = of_files(&scene(), &[&own], Some(&body), Defined::Nothing);
+    assert!(found.refusal.is_none() && found.rival.is_none(), "{:?}", found.notes);
+}
