@@ -27,9 +27,12 @@ pub fn utf8_text(bytes: &[u8]) -> Cow<'_, [u8]> {
 }
 
 /// Text of a file as [`utf8_text`], one line for each statement: a backslash at the end of a line continues it with
-/// the next one.
+/// the next one. Lines may end with a carriage return alone.
 pub fn whole_lines(bytes: &[u8]) -> Cow<'_, [u8]> {
-    let text = utf8_text(bytes);
+    let mut text = utf8_text(bytes);
+    if !text.contains(&b'\n') && text.contains(&b'\r') {
+        text.to_mut().iter_mut().filter(|byte| **byte == b'\r').for_each(|byte| *byte = b'\n');
+    }
     if !text.windows(2).any(|pair| matches!(pair, b"\\\n" | b"\\\r")) {
         return text;
     }
@@ -81,5 +84,6 @@ mod tests {
     fn continued_lines_become_one() {
         assert_eq!(&*whole_lines(b"l 1 2\\\n 3\nl 4 \\\r\n5\n"), b"l 1 2  3\nl 4  5\n");
         assert!(matches!(whole_lines(b"l 1 2\n"), Cow::Borrowed(b"l 1 2\n")));
+        assert_eq!(&*whole_lines(b"v 1\rl 1 2 \\\r3\r"), b"v 1\nl 1 2  3\n", "lines of old Macs");
     }
 }

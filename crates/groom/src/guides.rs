@@ -4,7 +4,7 @@ use glam::Vec3;
 use strandline_base::par::prelude::*;
 use strandline_base::{SettingError, lane_place};
 
-use crate::arcs::equal_arcs;
+use crate::arcs::parted_arcs;
 use crate::{Groom, GroomError, LANES, Vec3Lanes, Widths, attributes, block_count};
 
 /// The simulated strands at rest: each resampled to the same number of points at equal arc
@@ -56,7 +56,7 @@ impl Guides {
         positions.par_chunks_mut(points_per_strand).enumerate().for_each(|(block, chunk)| {
             for lane in 0..LANES {
                 let strand = groom.strand((block * LANES + lane).min(strand_count - 1));
-                for (slot, point) in chunk.iter_mut().zip(equal_arcs(strand, points_per_strand)) {
+                for (slot, point) in chunk.iter_mut().zip(parted_arcs(strand, points_per_strand)) {
                     slot.set(lane, point);
                 }
             }

@@ -5,7 +5,7 @@ use strandline_base::{
     memory::{self, Need},
 };
 
-use crate::arcs::equal_arcs;
+use crate::arcs::parted_arcs;
 use crate::{Groom, GroomError, Widths, attributes, format};
 
 impl Groom {
@@ -25,7 +25,7 @@ impl Groom {
         let mut groom = Self::empty(0.0);
         groom.points.reserve_exact(self.strand_count() * count);
         for strand in strands.clone() {
-            groom.push(equal_arcs(self.strand(strand), count));
+            groom.push(parted_arcs(self.strand(strand), count));
         }
         groom.widths = match &self.widths {
             Widths::PerPoint(widths) => Widths::PerPoint(attributes::along(self, widths, count, mix)),

@@ -263,6 +263,11 @@ impl Model {
         &self.colliders
     }
 
+    /// Root of the first strand at rest \[m\], head space.
+    pub fn first_root(&self) -> glam::Vec3 {
+        self.positions[0].get(0)
+    }
+
     /// The rest shape.
     pub fn rest(&self) -> &RestShape {
         &self.rest

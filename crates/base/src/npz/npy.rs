@@ -138,7 +138,11 @@ pub fn read(mut read: impl FnMut(&mut [u8]) -> Result<(), NpzError>) -> Result<H
         let known: Vec<&str> = Kind::ALL.iter().map(|row| row.1).collect();
         let found = format!("elements of type `{}`", name.escape_default());
         let known = known.join(" ");
-        NpzError::new(found, format!("one of {known}, or big-endian: convert it with numpy's astype"))
+        let mend = match name.as_str() {
+            "|O" => "Python objects cannot be read: save numbers, strands of different lengths as `points` and `starts`",
+            _ => "convert it with numpy's astype",
+        };
+        NpzError::new(found, format!("one of {known}, or big-endian: {mend}"))
     })?;
     header.shape.truncate(MAX_AXES);
     // Of one axis alone both orders are the same.
@@ -366,7 +370,10 @@ mod tests {
     fn what_cannot_be_read_is_refused_with_what_was_found() {
         let refused = |text: &str| parse(&literal(text)).unwrap_err().to_string();
         let objects = refused("{'descr': '|O', 'fortran_order': False, 'shape': (3,), }");
-        assert!(objects.contains("type `|O`") && objects.contains("astype"), "{objects}");
+        assert!(
+            objects.contains("type `|O`") && objects.contains("`starts`") && !objects.contains("astype"),
+            "{objects}"
+        );
         for text in [
             "",
             "{",

@@ -19,8 +19,9 @@ const DUMMY_SEGMENT: f32 = 3.0;
 /// Length below which a strand is too short to simulate \[m\], and the share of the median length that it may have.
 const TINY: f32 = 1e-3;
 const TINY_SHARE: f32 = 0.02;
-/// Thinnest and thickest strand that is believed \[m\]: far below a fibre of silk, far above a dreadlock.
-const WIDTHS: [f32; 2] = [2e-6, 1e-2];
+/// Thinnest and thickest strand that is believed \[m\]: far below a fibre of silk, and a thick dreadlock.
+/// Thicker ones are hairs of 20 um and more in millimetres.
+const WIDTHS: [f32; 2] = [2e-6, 2e-2];
 /// Largest ratio of a strand's width to the median.
 const WIDTH_RATIO: f32 = 50.0;
 /// Share of strands that counts as nearly all.

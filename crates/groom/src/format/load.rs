@@ -10,7 +10,7 @@ use super::ends::RootEnd;
 use super::report::Report;
 use super::{
     Attribute, Chosen, Format, HAIR_WIDTH, MAX_FILE_BYTES, MAX_POINTS, MAX_STRANDS, Parsed, Reader, project,
-    sieve::sieve,
+    sieve::sieve, sound::mend_looks,
 };
 use crate::{Groom, GroomError, Widths};
 
@@ -285,7 +285,11 @@ pub fn sieved(groom: Groom, options: &LoadOptions) -> Result<Loaded, GroomError>
 /// A bad strand in strict mode; no strand left.
 pub fn prepare(parsed: Parsed, options: &LoadOptions) -> Result<Loaded, GroomError> {
     let mut problems = parsed.problems;
-    let mut groom = sieve(parsed.groom, options.strict, &mut problems)?;
+    let mut groom = parsed.groom;
+    if !options.strict {
+        problems.extend(mend_looks(&mut groom));
+    }
+    let mut groom = sieve(groom, options.strict, &mut problems)?;
     if groom.strand_count() == 0 {
         return Err(GroomError::Empty);
     }

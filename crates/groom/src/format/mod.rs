@@ -24,6 +24,7 @@ mod registry;
 mod report;
 mod save;
 mod sieve;
+mod sound;
 pub mod tfx;
 mod tfx_text;
 pub mod usda;

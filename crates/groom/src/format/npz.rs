@@ -100,6 +100,13 @@ impl<'a> Arrays<'a> {
         })
     }
 
+    /// True if an array has a row for each strand in place of each point.
+    fn is_of(&mut self, name: &str, strands: usize, points: usize) -> Result<bool, GroomError> {
+        let source = self.source;
+        let rows = self.npz.open(name).map_err(|error| refused(&source, error))?;
+        Ok(strands != points && rows.is_some_and(|rows| rows.shape().first() == Some(&(strands as u64))))
+    }
+
     fn whole(&mut self, name: &str, rows: usize) -> Result<Option<Vec<u32>>, GroomError> {
         self.with(name, |source, array| {
             if array.shape != [rows as u64] {
@@ -137,12 +144,14 @@ pub(super) fn read_frame(bytes: &[u8], chosen: Chosen) -> Result<Parsed, GroomEr
     let mut problems = Vec::new();
     let mut groom = places(&mut arrays, chosen, &mut problems)?;
     let (strands, points) = (groom.strand_count(), groom.points.len());
-    if let Some(widths) = arrays.floats("widths", points, 1)? {
-        groom.widths = Widths::PerPoint(widths);
-    } else if let Some(widths) = arrays.floats("strand_widths", strands, 1)? {
-        groom.widths = Widths::PerStrand(widths);
-    }
-    groom.colors = arrays.triples("colors", points)?;
+    groom.widths = widths(&mut arrays, strands, points)?.unwrap_or(groom.widths);
+    groom.colors = match arrays.is_of("colors", strands, points)? {
+        true => arrays.triples("colors", strands)?.map(|colors| {
+            let counts = groom.starts.windows(2).map(|pair| (pair[1] - pair[0]) as usize);
+            colors.iter().zip(counts).flat_map(|(color, count)| std::iter::repeat_n(*color, count)).collect()
+        }),
+        false => arrays.triples("colors", points)?,
+    };
     groom.transparencies = arrays.floats("transparencies", points, 1)?;
     let uvs = match arrays.floats("root_uv", strands, 2)? {
         None => arrays.floats("uv_coords", strands, 2)?,
@@ -162,13 +171,33 @@ pub(super) fn read_frame(bytes: &[u8], chosen: Chosen) -> Result<Parsed, GroomEr
     Ok(Parsed { format: ".npz", groom, problems })
 }
 
+/// Widths of points or strands, or twice the radii of them.
+fn widths(arrays: &mut Arrays, strands: usize, points: usize) -> Result<Option<Widths>, GroomError> {
+    for (name, factor) in [("widths", 1.0), ("strand_widths", 1.0), ("radii", 2.0)] {
+        let is_of_strands = name == "strand_widths" || arrays.is_of(name, strands, points)?;
+        let found = arrays.floats(name, if is_of_strands { strands } else { points }, 1)?;
+        let found = found.map(|all| all.into_iter().map(|width| factor * width).collect());
+        if let Some(widths) = found {
+            return Ok(Some(if is_of_strands {
+                Widths::PerStrand(widths)
+            } else {
+                Widths::PerPoint(widths)
+            }));
+        }
+    }
+    Ok(None)
+}
+
 /// The strands alone.
 fn places(arrays: &mut Arrays, chosen: Chosen, problems: &mut Vec<String>) -> Result<Groom, GroomError> {
     let Some(name) = PLACES.iter().find(|name| arrays.has(name)) else {
         let names: Vec<&str> = arrays.npz.names().take(8).collect();
-        return Err(arrays.source.error(format!("the arrays {names:?}"), "one of `points` or `positions`"));
+        return Err(arrays.source.error(
+            format!("the arrays {names:?}"),
+            "one of `points` or `positions`, with `starts` or `counts`",
+        ));
     };
-    let starts = arrays.with("starts", |source, array| array.whole(source, "starts"))?;
+    let starts = starts(arrays)?;
     let placed = arrays.with(name, |source, array| match &starts {
         None => Ok((array::strands(source, array, chosen.per_strand)?, 1)),
         Some(starts) => from_starts(source, array, starts, chosen.frame.unwrap_or(0).into()),
@@ -181,6 +210,24 @@ fn places(arrays: &mut Arrays, chosen: Chosen, problems: &mut Vec<String>) -> Re
         });
     }
     Ok(groom)
+}
+
+/// First points of strands and the number of points, by any of the names that research code has for them.
+fn starts(arrays: &mut Arrays) -> Result<Option<Vec<u32>>, GroomError> {
+    for name in ["starts", "offsets"] {
+        let starts = arrays.with(name, |source, array| array.whole(source, name))?;
+        if starts.is_some() {
+            return Ok(starts);
+        }
+    }
+    let counts = arrays.with("counts", |source, array| array.whole(source, "counts"))?;
+    let Some(counts) = counts else { return Ok(None) };
+    let mut total = 0_u64;
+    let ends = counts.iter().map(|count| {
+        total += u64::from(*count);
+        u32::try_from(total).unwrap_or(u32::MAX)
+    });
+    Ok(Some([0].into_iter().chain(ends).collect()))
 }
 
 /// Strands that begin at `starts` in an array of points or in a frame of points, and the number of frames.

@@ -2,7 +2,9 @@
 
 use glam::{Vec2, Vec3};
 use strandline_base::npz;
-use strandline_groom::format::{LoadOptions, Saved, Scale, bin, data, hair, load, obj, ply, tfx, usda};
+use strandline_groom::format::{
+    LoadOptions, Saved, Scale, bin, data, hair, load, npz as groom_npz, obj, ply, tfx, usda,
+};
 use strandline_groom::{Groom, Widths};
 
 /// Three strands of four points.
@@ -349,4 +351,41 @@ fn a_frame_of_moving_hair_is_chosen() {
     );
     let refused = read(Some(3)).unwrap_err().to_string();
     assert!(refused.contains("3 frames, expected a frame 3"), "{refused}");
+}
+
+#[test]
+fn arrays_of_research_code_are_read_by_their_counts_and_shapes() {
+    let points =
+        || npz::Array::f32s("points", &[12, 3], strands().concat().iter().flat_map(|point| point.to_array()));
+    let whole = |name, all: &[u32]| npz::Array::u32s(name, &[all.len()], all.iter().copied());
+    for starts in [whole("offsets", &[0, 4, 8, 12]), whole("counts", &[4; 3])] {
+        let radii = npz::Array::f32s("radii", &[12], [4e-5; 12]);
+        let colors = npz::Array::f32s("colors", &[3, 3], (0..9).map(|part| 0.1 * part as f32));
+        let groom = groom_npz::read(&npz::pack(&[points(), starts, radii, colors]), None).unwrap().groom;
+        check(&groom, "counts");
+        assert_eq!(groom.widths, Widths::PerPoint(vec![8e-5; 12]));
+        let colors = groom.colors.unwrap();
+        assert_eq!((colors.len(), colors[3], colors[4]), (12, [0.0, 0.1, 0.2], [0.3, 0.4, 0.5]));
+    }
+    let widths = npz::Array::f32s("widths", &[3], [1e-5, 2e-5, 3e-5]);
+    let groom =
+        groom_npz::read(&npz::pack(&[points(), whole("counts", &[4; 3]), widths]), None).unwrap().groom;
+    assert_eq!(groom.widths, Widths::PerStrand(vec![1e-5, 2e-5, 3e-5]));
+    let refused =
+        groom_npz::read(&npz::pack(&[points(), whole("counts", &[4, 4, u32::MAX])]), None).unwrap_err();
+    assert!(refused.to_string().contains("4 numbers for 12 points"), "{refused}");
+}
+
+#[test]
+fn bytes_of_colours_of_a_ply_are_those_of_a_picture() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n\
+                property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n0 0 0 96 64 40\n0 1 0 96 64 255\n";
+    let colors = ply::read(text.as_bytes(), Some(2)).unwrap().groom.colors.unwrap();
+    let expected = [0.1170, 0.0513, 0.0212];
+    assert!(
+        colors[0].iter().zip(expected).all(|(part, expected)| (part - expected).abs() < 1e-4),
+        "{:?}",
+        colors[0]
+    );
+    assert_eq!(colors[1][2], 1.0);
 }

@@ -210,7 +210,7 @@ fn hair_of_another_head_in_any_axes_hangs_from_this_one() {
 }
 
 /// Balls of some radii at some places, as one mesh.
-fn balls(parts: &[(Vec3, Vec3)]) -> Mesh {
+pub(super) fn balls(parts: &[(Vec3, Vec3)]) -> Mesh {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     let (rings, steps) = (16, 24);
     for (middle, radii) in parts {
@@ -234,6 +234,37 @@ fn balls(parts: &[(Vec3, Vec3)]) -> Mesh {
         }
     }
     Mesh::new(positions, triangles).unwrap()
+}
+
+#[test]
+fn a_whole_person_shows_its_axes_whatever_its_arms_do() {
+    let limbs = |arms: [Vec3; 2]| {
+        let sides = [-1.0, 1.0].map(|side| {
+            let at = |x: f32, y: f32, z: f32| Vec3::new(side * x, y, z);
+            let legs = [
+                (at(0.09, -1.05, -0.02), Vec3::new(0.08, 0.47, 0.08)),
+                (at(0.09, -1.5, 0.05), Vec3::new(0.05, 0.03, 0.12)),
+            ];
+            [legs[0], legs[1], (arms[0] * Vec3::new(side, 1.0, 1.0), arms[1])]
+        });
+        let trunk = (Vec3::new(0.0, -0.5, -0.02), Vec3::new(0.18, 0.33, 0.11));
+        balls(&[&[trunk], sides.as_flattened()].concat())
+    };
+    let spread = [Vec3::new(0.42, -0.25, -0.02), Vec3::new(0.3, 0.05, 0.05)];
+    let hanging = [Vec3::new(0.24, -0.5, -0.02), Vec3::new(0.05, 0.33, 0.05)];
+    for arms in [spread, hanging] {
+        let (mut person, limbs) = (Mannequin::new().mesh(), limbs(arms));
+        let first = person.positions.len() as u32;
+        person.positions.extend(&limbs.positions);
+        person.normals.extend(&limbs.normals);
+        person.triangles.extend(limbs.triangles.iter().map(|corners| corners.map(|corner| first + corner)));
+        for placing in [HERE, Placing { scale: 0.01, turn: Up::Z.rotation() }] {
+            let (_, mesh) = filed(&hair(Style::Pixie), &person, placing, placing);
+            let shown = Shown::new(&scene(), &mesh, Defined::Nothing);
+            assert!(is_near(shown.placing, placing), "{placing:?}: {:?} {:?}", shown.placing, shown.pose);
+            assert!(shown.pose.is_person && shown.pose.shows_front, "{:?}", shown.pose);
+        }
+    }
 }
 
 /// An animal on four legs that looks along z.

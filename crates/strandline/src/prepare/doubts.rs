@@ -150,7 +150,7 @@ pub(super) fn note_of_size(is_defined: bool, size: f32) -> Option<String> {
 /// The reason to refuse the size of a person's head in the metres that the format of the body's file defines.
 pub(super) fn refusal_of_body(shown: &Shown) -> Option<String> {
     let width = shown.odd_width.filter(|_| shown.defined != Defined::Nothing)?;
-    let usual = super::units::unit_of_width(width, 1.0).0;
+    let usual = super::units::unit_of_width(width).0;
     Some(format!(
         "its head is {width:.3} m wide in the metres that its format defines; `body.scale` decides: `--set \
          body.scale={usual}` makes it that of a person, `--set body.scale=1` keeps it"

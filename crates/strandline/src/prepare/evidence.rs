@@ -167,6 +167,11 @@ impl Hair {
         self.roots.iter().filter(is_face).count() as f32 / self.roots.len().max(1) as f32
     }
 
+    /// True where roots lie in the front half of the head in the mean.
+    pub fn is_ahead(&self, skull: &Skull) -> bool {
+        mean(self.roots.iter().copied()).z > skull.middle.y
+    }
+
     /// Evidence for hair to lie on a head as hair does; that of its back counts where the head shows its front.
     pub fn on(&self, skull: &Skull, shows_front: bool) -> f32 {
         let long = (self.length() / (LONG * skull.size.x)).clamp(0.0, 1.0);

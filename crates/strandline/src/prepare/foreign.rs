@@ -43,7 +43,7 @@ pub(super) fn found(search: &Search, unit: f32) -> Option<Found> {
     };
     let fitted = |turn: &Quat| {
         let (hair, ratio) = fitted(search, &Placing { scale: unit, turn: *turn })?;
-        let usual = unit_of_width(skull.size.x / ratio / unit, unit);
+        let usual = unit_of_width(skull.size.x / ratio / unit);
         let placing = Placing { scale: if usual.1.is_none() { usual.0 } else { unit }, turn: *turn };
         Some((placing, hair))
     };

@@ -131,7 +131,7 @@ fn together(scene: &Scene, strands: Strands, Body { mesh, shown }: Body) -> Plac
     let is_guessed = is_open && shown.defined == Defined::Nothing && !pose.is_person && !placings.is_foreign;
     let scalp = sample.scalp(&placings.groom, &placings.body);
     if let Some(width) = scalp.filter(|width| is_guessed && !SCALPS.contains(width)) {
-        let (scale, odd) = unit_of_width(width / body.scale, body.scale);
+        let (scale, odd) = unit_of_width(width / body.scale);
         placings.groom.scale *= scale / body.scale;
         (placings.body.scale, strange) = (scale, odd);
     }

@@ -2,16 +2,21 @@
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec2, Vec3};
 use strandline_base::math;
 
 use super::profile::Profile;
 use super::sample::surface;
+use super::skull::Skull;
 use crate::body::Mesh;
 use crate::groom::format::Up;
 
 /// Places of a body's surface that are looked at.
 const PLACES: usize = 4000;
+/// Depth of a head below its crown over the mean of its width and depth, and the share of the places on a body that lie on
+/// its head below which the head is looked at by itself.
+const HEAD: f32 = 1.7;
+const FEW: f32 = 0.2;
 /// Difference from the head of a person up to which a head is one.
 const PERSON: f32 = 0.055;
 /// Difference over that of the axes as they are in the file below which others are surely right.
@@ -58,7 +63,7 @@ pub(super) fn turns() -> impl Iterator<Item = Quat> {
 /// The pose that a body shows, given the axes that may point up: those of its file where it shows none.
 pub(super) fn pose(mesh: &Mesh, ups: &[Up]) -> Pose {
     let places = surface(mesh, PLACES);
-    let seen: Vec<Seen> = ups.iter().map(|up| Seen::new(&places, *up)).collect();
+    let seen: Vec<Seen> = ups.iter().map(|up| Seen::new(mesh, &places, *up)).collect();
     let Some((first, others)) = seen.split_first() else { unreachable!("an axis that may point up") };
     let best = others.iter().fold(first, |best, one| {
         let limit = if std::ptr::eq(best, first) { SURER * best.strange } else { best.strange };
@@ -83,8 +88,10 @@ struct Seen {
 }
 
 impl Seen {
-    fn new(places: &[Vec3], up: Up) -> Self {
+    fn new(mesh: &Mesh, places: &[Vec3], up: Up) -> Self {
         let mut strange = f32::INFINITY;
+        let of_head = head_places(mesh, places, up.rotation());
+        let places = of_head.as_deref().unwrap_or(places);
         let fronts = turns_of(up).map(|turn| {
             let turned: Vec<Vec3> = places.iter().map(|place| turn * *place).collect();
             let Some(profile) = Profile::of(&turned) else { return (f32::INFINITY, [0.0; 2]) };
@@ -107,6 +114,36 @@ impl Seen {
         let turn = turns_of(self.up)[front];
         Pose { turn, is_person: true, shows_front, up: self.up, is_sure: true }
     }
+}
+
+/// Places of the surface of the highest part of a body once it is turned, where few of those of the whole body lie there:
+/// a standing person has a tenth of its skin on the head.
+fn head_places(mesh: &Mesh, places: &[Vec3], turn: Quat) -> Option<Vec<Vec3>> {
+    let turned: Vec<Vec3> = places.iter().map(|place| turn * *place).collect();
+    let skull = Skull::without_ears(&turned)?;
+    let unit = 0.5 * skull.size.element_sum();
+    let is_of_head = |place: Vec3| {
+        let beside = Vec2::new(place.x, place.z) - skull.middle;
+        place.y > skull.top - HEAD * unit && beside.abs().max_element() < unit
+    };
+    let count = turned.iter().filter(|place| is_of_head(**place)).count();
+    if count as f32 > FEW * places.len() as f32 {
+        return None;
+    }
+    let is_near = |corner: u32| is_of_head(turn * mesh.positions[corner as usize]);
+    let triangles = mesh.triangles.iter().filter(|corners| corners.iter().any(|corner| is_near(*corner)));
+    let mut triangles: Vec<[u32; 3]> = triangles.copied().collect();
+    if triangles.is_empty() {
+        return None;
+    }
+    let mut own: Vec<u32> = triangles.concat();
+    own.sort_unstable();
+    own.dedup();
+    for corner in triangles.as_flattened_mut() {
+        *corner = own.partition_point(|index| *index < *corner) as u32;
+    }
+    let positions = own.iter().map(|index| mesh.positions[*index as usize]).collect();
+    Some(surface(&Mesh { positions, triangles, ..Mesh::default() }, PLACES))
 }
 
 /// True where an animal stands on four feet once it is turned: what is lowest lies apart, with nothing in the middle.

@@ -38,7 +38,7 @@ pub(super) fn flags(placing: &Placing, other: &Placing) -> String {
     flags
 }
 
-/// One line of the choices; none where nothing was open, or all is as it stands in the files. `width` \[m\] is that of a
+/// One line of the choices; none where nothing was open, or all is as it stands in the files. `width` \[units\] is that of a
 /// head that no usual unit makes that of a person.
 pub(super) fn noted(scene: &Scene, placings: &Placings, has_body: bool, width: Option<f32>) -> Vec<String> {
     let mut words = Vec::new();
@@ -83,7 +83,9 @@ pub(super) fn noted(scene: &Scene, placings: &Placings, has_body: bool, width: O
     let keys = "`scale`, `up`, `rotation` and `translation` of [groom] and [body] say otherwise, and so do --scale, --up \
                 and --turn for the groom";
     let strange = width.map_or(String::new(), |width| {
-        format!(" (in no usual unit is it the head of a person: the scalp would be {width:.2} m wide)")
+        format!(
+            " (in no usual unit is it the head of a person: in metres its scalp would be {width:.2} m wide)"
+        )
     });
     let note = || format!("taken from the files{unsure}: {}{rival}; {keys}{strange}", words.join(", "));
     (!words.is_empty()).then(note).into_iter().collect()

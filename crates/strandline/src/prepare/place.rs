@@ -5,6 +5,7 @@ use strandline_base::math;
 
 use super::{
     doubts, foreign,
+    framing::center,
     guess::{self, Strands},
     join,
     loading::Loading,
@@ -19,6 +20,9 @@ use crate::{
         format::{Attribute, HAIR_WIDTH},
     },
 };
+
+/// Distance of hair from the origin \[m\] beyond which coordinates of single precision are 30 um apart.
+const FAR: f32 = 256.0;
 
 /// Guesses units, axes and front of grooms and meshes together, brings them into head space and joins them.
 pub(super) fn place(loading: &mut Loading) -> Result<(), Error> {
@@ -81,7 +85,27 @@ fn place_hair(loading: &mut Loading) -> Result<(), Error> {
     notes.extend(join::add_grooms(scene, groom, further, placings.groom, mesh.as_ref(), place)?);
     notes.extend(groom.mend());
     notes.extend(groom.unlike_beside());
+    notes.extend(far_note(groom, scene, mesh.is_some()));
     Ok(())
+}
+
+/// Describes hair that lies too far from the origin of its files for steps in single precision, with the settings that
+/// bring it near.
+fn far_note(groom: &Groom, scene: &Scene, has_body: bool) -> Option<String> {
+    let middle = center(groom.bounds());
+    if middle.abs().max_element() < FAR {
+        return None;
+    }
+    let set = |key: &str, translation: Vec3| {
+        let [x, y, z] = (translation - middle.round()).to_array();
+        format!("--set {key}.translation=[{x},{y},{z}]")
+    };
+    let body = if has_body { format!(" {}", set("body", scene.body.translation)) } else { String::new() };
+    Some(format!(
+        "the hair lies {:.0} m from the origin of its files, too far for steps in single precision: `{}{body}` brings it near",
+        middle.length(),
+        set("groom", scene.groom.translation),
+    ))
 }
 
 /// Places strands: scaled and turned as guessed, then turned (degrees) and moved \[m\] as the scene says.
@@ -95,5 +119,27 @@ fn place_groom(groom: &mut Groom, placing: Placing, scene: &Scene, turn: Vec3, t
     // The width of a hair is in metres already.
     if !has_widths {
         groom.widths = Widths::Constant(HAIR_WIDTH);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hair_far_from_the_origin_is_told_with_the_settings_that_bring_it_near() {
+        let at = |x: f32| {
+            let mut groom = Groom::empty(8e-5);
+            groom.push([Vec3::new(x, 1.5, -0.2), Vec3::new(x, 1.25, -0.2)]);
+            groom
+        };
+        let mut scene = Scene::default();
+        assert_eq!(far_note(&at(200.0), &scene, true), None);
+        let keys = "--set groom.translation=[-5000,-1,0] --set body.translation=[-5000,-1,0]";
+        let note = far_note(&at(5000.0), &scene, true).unwrap();
+        assert!(note.contains("5000 m") && note.contains(keys), "{note}");
+        scene.groom.translation.x = 10.0;
+        let note = far_note(&at(5000.0), &scene, false).unwrap();
+        assert!(note.contains("groom.translation=[-4990,") && !note.contains("body."), "{note}");
     }
 }

@@ -6,7 +6,7 @@ use strandline_base::math;
 use super::evidence::Hair;
 use super::head::{Pose, turns};
 use super::placing::{Placing, place_mesh, upright};
-use super::sample::UNITS;
+use super::sample::{FURTHER, UNITS};
 use super::skull::Skull;
 use crate::{
     Scene,
@@ -46,9 +46,10 @@ const MOST_ROOTS: f32 = 0.8;
 /// Every n-th strand that is tried with all units, and axes that are then tried with finer ones.
 const FEWER: usize = 4;
 const AXES: usize = 6;
-/// Units beside [`UNITS`] that a scale found by fitting is taken for, and how near they must be.
-const FURTHER: [f32; 3] = [0.1, 0.3048, 1e-4];
+/// Deviation from a unit up to which a scale found by fitting is taken for it.
 const ALIKE: f32 = 0.015;
+/// Sizes of hair over that of its body's unit in which it is of another head and of no other unit.
+const OTHER_HEADS: std::ops::Range<f32> = 0.75..1.33;
 
 /// A body in head space that hair is brought to.
 pub(super) struct Head {
@@ -117,7 +118,11 @@ impl Search<'_> {
         if fit <= FLOATING {
             return Some(self.against(same, fit));
         }
-        if is_open { better(self.any_unit()) } else { None }
+        let is_unit = |found: &Found| {
+            let ratio = found.placing.scale / same.scale;
+            !OTHER_HEADS.contains(&ratio) || UNITS.contains(&found.placing.scale)
+        };
+        if is_open { better(self.any_unit()).filter(is_unit) } else { None }
     }
 
     /// The place that the format of the groom's file defines, or else that of the body's file.
@@ -142,8 +147,11 @@ impl Search<'_> {
         let placed = self.placed(&same);
         let Some(skull) = &self.head.skull else { return sure };
         let is_fixed = self.is_defined || self.scene.groom.up != Up::Auto || !self.is_free();
-        if is_fixed || !placed.is_full(Some(skull.center())) {
+        if is_fixed {
             return sure;
+        }
+        if !placed.is_full(Some(skull.center())) {
+            return self.of_patch(sure, skull);
         }
         let tried: Vec<Placing> = turns().map(|turn| Placing { turn, ..same }).collect();
         let fits = self.fits(&tried);
@@ -159,6 +167,21 @@ impl Search<'_> {
             },
             None => sure,
         }
+    }
+
+    /// The place of a patch in the axes of its body's file. Where those are no program's and leave it behind the face, the
+    /// usual ones that bring it onto the face are the next place, as likely.
+    fn of_patch(&self, sure: Found, skull: &Skull) -> Found {
+        let [y, z] = [Up::Y, Up::Z].map(upright);
+        let is_near = |turn: Quat| sure.placing.turn.angle_between(turn) < 0.01;
+        let is_ahead = |placing: &Placing| self.placed(placing).is_ahead(skull);
+        if !self.head.pose.shows_front || is_near(y) || is_near(z) || is_ahead(&sure.placing) {
+            return sure;
+        }
+        let tried = [y, z].map(|turn| Placing { turn, ..sure.placing });
+        let fits = self.fits(&tried);
+        let next = tried.into_iter().zip(fits).find(|(placing, fit)| *fit < ON_SKIN && is_ahead(placing));
+        next.map_or(sure, |(next, _)| Found { margin: 0.0, next: Some(next), ..sure })
     }
 
     /// True where hair may show the front of groom and body: it is a full head of hair, and a scene turns neither.
@@ -344,7 +367,7 @@ fn as_unit(scale: f32, body: f32) -> f32 {
     let units = UNITS.into_iter().chain(FURTHER).chain([body]);
     let near = units.into_iter().find(|unit| (scale / unit - 1.0).abs() < ALIKE);
     near.unwrap_or_else(|| {
-        let digit = math::powf(10.0, math::log10(scale).floor() - 2.0);
-        (scale / digit).round() * digit
+        let digits = math::powf(10.0, 2.0 - math::log10(scale).floor());
+        (scale * digits).round() / digits
     })
 }

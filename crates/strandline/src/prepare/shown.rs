@@ -36,7 +36,7 @@ pub(super) struct Shown {
     pub defined: Defined,
     pub pose: Pose,
     pub placing: Placing,
-    /// Width \[m\] of a head that no usual unit makes that of a person.
+    /// Width \[units\] of a head that no usual unit makes that of a person.
     pub strange: Option<f32>,
     /// Width of a person's head that is none in metres, in units of a file whose scale a scene leaves out.
     pub odd_width: Option<f32>,
@@ -83,7 +83,7 @@ fn of_body(scene: &Scene, mesh: &Mesh, defined: Defined) -> (Placing, Pose, Opti
     let width = width.filter(|width| given.is_none() && !SCALPS.contains(&(scale * width)));
     match width.filter(|_| pose.is_person) {
         Some(width) => {
-            let (scale, strange) = unit_of_width(width, scale);
+            let (scale, strange) = unit_of_width(width);
             (Placing { scale, turn }, pose, strange)
         }
         None => (Placing { scale, turn }, pose, None),

@@ -7,8 +7,9 @@ use crate::body::Mesh;
 
 /// Depth below the crown over the width of the skull at which it is widest, above brows and ears.
 const WIDEST: f32 = 0.6;
-/// Width at which the search begins over the height of the body.
-const START: f32 = 0.12;
+/// Widths at which the search begins over the height of the body: that of a bust, and where its head is narrower, that of
+/// a whole person.
+const STARTS: [f32; 2] = [0.12, 0.06];
 /// Rounds in which the width is found, and what it changes by in the last one, as a share of it.
 const ROUNDS: usize = 64;
 const CONVERGED: f32 = 1e-3;
@@ -64,18 +65,11 @@ impl Skull {
                 .map(|place| Vec2::new(place.x, place.z))
                 .fold(start, |(low, high), place| (low.min(place), high.max(place)))
         };
-        // From above, so that no shoulder is taken for it.
-        let mut width = START * (top - low);
-        for _ in 0..ROUNDS {
+        let (middle, size) = grown(top - low, |width| {
             let (low, high) = above(width);
-            let found = (high.x - low.x).max(width);
-            if found - width < CONVERGED * width {
-                let size = high - low;
-                return (size.min_element() > 0.0).then_some(Self { top, size, middle: 0.5 * (low + high) });
-            }
-            width = found;
-        }
-        None
+            (high.x - low.x, (0.5 * (low + high), high - low))
+        })?;
+        (size.min_element() > 0.0).then_some(Self { top, size, middle })
     }
 
     /// That of the highest part of a body, without ears that stand out or up.
@@ -109,21 +103,35 @@ impl Skull {
 
     /// That whose crown is at a height, its width without ears.
     fn below(places: &[Vec3], top: f32, low: f32) -> Option<Self> {
-        let mut width = START * (top - low);
-        for _ in 0..ROUNDS {
+        let (middle, size) = grown(top - low, |width| {
             let upper = places.iter().filter(|place| (top - WIDEST * width..=top).contains(&place.y));
             let upper: Vec<Vec2> = upper.map(|place| Vec2::new(place.x, place.z)).collect();
             let start = (Vec2::INFINITY, Vec2::NEG_INFINITY);
             let (min, max) = upper.iter().fold(start, |(low, high), at| (low.min(*at), high.max(*at)));
-            let found = bare_width(&upper, min, max).max(width);
-            if found - width < CONVERGED * width {
-                let size = Vec2::new(found, max.y - min.y);
-                return size.is_finite().then_some(Self { top, size, middle: 0.5 * (min + max) });
+            let found = bare_width(&upper, min, max);
+            (found, (0.5 * (min + max), Vec2::new(found.max(width), max.y - min.y)))
+        })?;
+        size.is_finite().then_some(Self { top, size, middle })
+    }
+}
+
+/// The middle and the size of a skull, found from above, so that no shoulder is taken for it: `above` gives the width, and
+/// both, of the part of a body that a head of a width would have. The body has a height.
+fn grown(height: f32, above: impl Fn(f32) -> (f32, (Vec2, Vec2))) -> Option<(Vec2, Vec2)> {
+    for start in STARTS {
+        let mut width = start * height;
+        for round in 0..ROUNDS {
+            let (found, skull) = above(width);
+            if round == 0 && found < width && start != STARTS[1] {
+                break;
+            }
+            if found.max(width) - width < CONVERGED * width {
+                return Some(skull);
             }
             width = found;
         }
-        None
     }
+    None
 }
 
 /// The width of places seen from above, without what stands out to both sides in few slices.

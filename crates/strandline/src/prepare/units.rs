@@ -2,7 +2,7 @@
 
 use strandline_base::math;
 
-use super::sample::UNITS;
+use super::sample::{FURTHER, UNITS};
 use crate::groom::format::Scale;
 
 /// Distance from ear to ear \[m\] of the roots on a head: that of a doll to that of a giant, and that of a person, which a
@@ -23,19 +23,32 @@ pub(super) fn first_of(length: f32, lengths: &std::ops::RangeInclusive<f32>) -> 
     UNITS.into_iter().find(|unit| lengths.contains(&(unit * length))).unwrap_or(1.0)
 }
 
-/// The unit with which a head of a width \[units\] is most like that of a person; with it, where no usual one does, the
-/// width \[m\] that another unit would make it.
-pub(super) fn unit_of_width(width: f32, unit: f32) -> (f32, Option<f32>) {
+/// The unit with which a head of a width \[units\] is most like that of a person; with it the width again where none is.
+pub(super) fn unit_of_width(width: f32) -> (f32, Option<f32>) {
     let odd = |unit: &f32| math::ln(unit * width / SCALP).abs();
     let usual = UNITS.into_iter().filter(|unit| SCALPS.contains(&(unit * width)));
-    match usual.min_by(|one, two| odd(one).total_cmp(&odd(two))) {
+    let found = usual.min_by(|one, two| odd(one).total_cmp(&odd(two)));
+    match found.or_else(|| FURTHER.into_iter().find(|unit| SCALPS.contains(&(unit * width)))) {
         Some(unit) => (unit, None),
-        None => (as_written(SCALP / width), Some(unit * width)),
+        None => (as_written(SCALP / width), Some(width)),
     }
 }
 
 /// A scale of two digits, as a person would write it.
 fn as_written(scale: f32) -> f32 {
-    let digit = math::powf(10.0, math::log10(scale).floor() - 1.0);
-    (scale / digit).round() * digit
+    let digits = math::powf(10.0, 1.0 - math::log10(scale).floor());
+    (scale * digits).round() / digits
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_of_a_head_are_usual_ones_then_others_then_what_makes_it_a_person() {
+        assert_eq!(unit_of_width(15.0), (0.01, None));
+        assert_eq!(unit_of_width(0.51), (0.3048, None));
+        assert_eq!(unit_of_width(1.5), (0.1, None));
+        assert_eq!(unit_of_width(3.2), (0.047, Some(3.2)), "two digits, as they are written");
+    }
 }

@@ -1,5 +1,6 @@
 //! Jumps of a body: teleports and cuts, over which hair is carried.
 
+use glam::Vec3;
 use strandline_base::math;
 
 use crate::body::BodyFrame;
@@ -12,10 +13,11 @@ const TURN_SPEED: f64 = 40.0;
 const WAY_SPEED: f64 = 25.0;
 
 /// The jump from one frame of the body to another, human-readable; `None` where it moves there within `seconds` without
-/// a mark between them.
-pub(super) fn jump(from: &BodyFrame, to: &BodyFrame, seconds: f64) -> Option<String> {
+/// a mark between them. `root` \[m\], head space, is a place on the head: where that lies far from the origin of its file,
+/// a small turn about the neck moves the origin by metres.
+pub(super) fn jump(from: &BodyFrame, to: &BodyFrame, root: Vec3, seconds: f64) -> Option<String> {
     let [start, end] = [from, to].map(BodyFrame::world_from_head);
-    let way = start.translation.distance(end.translation);
+    let way = start.point(root).distance(end.point(root));
     let turn = 2.0 * math::asin((start.rotation.conjugate() * end.rotation).xyz().length().min(1.0));
     let is_turn = turn > LEAST_TURN && f64::from(turn) > TURN_SPEED * seconds;
     let is_way = way > LEAST_WAY && f64::from(way) > WAY_SPEED * seconds;
@@ -25,4 +27,24 @@ pub(super) fn jump(from: &BodyFrame, to: &BodyFrame, seconds: f64) -> Option<Str
         let why = if is_marked { ", as marked" } else { "" };
         format!("the body jumps by {way:.2} m and {degrees:.0} degrees{why}: hair is carried with it")
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Pose;
+
+    #[test]
+    fn a_small_turn_far_from_the_origin_is_no_jump() {
+        let root = Vec3::new(5000.0, 1.6, 3000.0);
+        let turned = |degrees: f32| {
+            let turn = math::rotation(Vec3::Y, degrees.to_radians());
+            BodyFrame::REST.carried_by(&Pose::rotation_about(root - 0.1 * Vec3::Y, turn))
+        };
+        let found = |degrees: f32| jump(&turned(0.0), &turned(degrees), root, 0.01);
+        assert_eq!(found(0.1), None, "ten metres at the origin of the file, none at the head");
+        assert!(found(90.0).unwrap().contains("90 degrees"));
+        let moved = BodyFrame::REST.carried_by(&Pose { translation: Vec3::X, ..Pose::IDENTITY });
+        assert!(jump(&turned(0.0), &moved, root, 0.01).unwrap().contains("1.00 m"));
+    }
 }

@@ -333,11 +333,11 @@ impl Simulation {
     /// made where the body ends.
     fn carry_over_jumps(&mut self, drives: &mut [Drive], seconds: f64) -> Result<(), SimError> {
         let Some(end) = drives.last().map(|drive| drive.body.clone()) else { return Ok(()) };
-        let step = self.time_step();
+        let (step, root) = (self.time_step(), self.engine.model().first_root());
         let here = &self.bodies[1];
         let before = std::iter::once(here).chain(drives.iter().map(|drive| &drive.body));
-        let found = before.zip(&*drives).find_map(|(before, drive)| jump(before, &drive.body, step));
-        let Some(note) = found.or_else(|| jump(here, &end, seconds.max(step))) else { return Ok(()) };
+        let found = before.zip(&*drives).find_map(|(before, drive)| jump(before, &drive.body, root, step));
+        let Some(note) = found.or_else(|| jump(here, &end, root, seconds.max(step))) else { return Ok(()) };
         self.engine.carry(&end)?;
         self.engine.notes.push(note);
         self.bodies = [end.clone(), end.clone()];

@@ -9,6 +9,7 @@ use strandline_base::ply::{self, Table};
 use super::bytes::Source;
 use super::joining::Lines;
 use super::npy::{even, split};
+use super::project::linear;
 use super::{MAX_POINTS, MAX_POINTS_PER_STRAND, MAX_STRANDS, Parsed};
 use crate::{Groom, GroomError, Influences, Widths};
 
@@ -170,9 +171,9 @@ fn of_vertices(groom: &mut Groom, vertices: &Table, order: Option<&[u32]>) {
     let one = |name| vertices.floats(name).map(|all| placed(all, order));
     groom.points = placed(std::mem::take(&mut groom.points), order);
     let colors = vertices.triples(["red", "green", "blue"]).map(|all| placed(all, order));
-    // Whole numbers of a byte are 0 to 255.
-    let scale = if vertices.is_byte("red") { 1.0 / 255.0 } else { 1.0 };
-    groom.colors = colors.map(|all| all.into_iter().map(|color| color.map(|part| part * scale)).collect());
+    // Whole numbers of a byte are those of a picture, as scanners and mesh tools write them.
+    let part = if vertices.is_byte("red") { |byte: f32| linear(byte / 255.0) } else { |part: f32| part };
+    groom.colors = colors.map(|all| all.into_iter().map(|color| color.map(part)).collect());
     let doubled = || Some(one("radius")?.into_iter().map(|radius| 2.0 * radius).collect());
     if let Some(widths) = one("width").or_else(doubled) {
         groom.widths = Widths::PerPoint(widths);
