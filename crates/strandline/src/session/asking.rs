@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::{Change, Executor, Inline, Session};
+use super::{Change, Inline, Session};
 use crate::{
     Error,
     groom::{LANES, Vec3Lanes},
@@ -101,7 +101,7 @@ impl AskedPoints {
 }
 
 #[cfg(feature = "gpu")]
-impl<E: Executor> Session<E> {
+impl Session<Inline> {
     /// Draws the shown moment into a texture of the host, and does not wait for it.
     ///
     /// # Errors
