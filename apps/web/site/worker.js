@@ -168,6 +168,12 @@ const acts = {
   drag: ({ x, y }) => engine.drag(x, y),
   release: () => engine.release(),
   reset: () => engine.reset(),
+  // Nothing but the waking that follows each message.
+  wake() {},
+  // A page that is seen again goes on from where it was: the time between is nobody's.
+  visible() {
+    [last, owed] = [undefined, 0];
+  },
   pause({ on }) {
     paused = on;
   },
@@ -192,7 +198,7 @@ onmessage = async ({ data }) => {
   if (data.type !== "open" && !engine) return;
   try {
     await acts[data.type](data);
-    if (!["open", "save"].includes(data.type) && engine) wake();
+    if (!["open", "save", "visible"].includes(data.type) && engine) wake();
   } catch (error) {
     fail(error);
   }

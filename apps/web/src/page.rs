@@ -10,6 +10,9 @@ use crate::dropped::{Dropped, text};
 
 /// Strands that a page simulates until it is asked for more.
 const STRANDS: &str = "400";
+/// Most strands that a page simulates, and that it grows in all: more would keep a visitor waiting for minutes.
+const MOST_SIMULATED: usize = 20_000;
+const MOST_GROWN: usize = 200_000;
 /// Widths and heights of pictures on the CPU \[pixel\].
 const SIDES: [u32; 2] = [16, 2048];
 
@@ -79,7 +82,7 @@ impl Page {
     /// Hair of the settings that a link gives, in pictures of a width and a height \[pixel\].
     ///
     /// # Errors
-    /// A key that no setting has, a value outside its range, more memory than may be taken.
+    /// A key that no setting has, a value outside its range, more strands than a page grows, more memory than may be taken.
     pub fn open(given: Vec<(String, String)>, size: [u32; 2]) -> Result<Self, String> {
         Self::load(given, Vec::new(), size)
     }
@@ -104,6 +107,7 @@ impl Page {
         if scene.paths_mut().next().is_some() {
             return Err("a link cannot name files: drop them onto the page".to_owned());
         }
+        check_strands(&scene)?;
         dropped.iter().for_each(|file| file.name_in(&mut scene));
         let sources = dropped.iter().fold(Sources::default(), |sources, file| file.add_to(sources));
         let mut prepared = Prepared::from_sources(&scene, &sources).map_err(text)?;
@@ -309,6 +313,21 @@ impl Page {
     }
 }
 
+/// Refuses more strands than a page moves or grows in time.
+fn check_strands(scene: &Scene) -> Result<(), String> {
+    let counts = [
+        ("style.strand_count", Some(scene.style.strand_count), MOST_SIMULATED),
+        ("groom.guides", scene.groom.guides.map(|count| count as usize), MOST_SIMULATED),
+        ("groom.bound", scene.groom.bound.map(|count| count as usize), MOST_GROWN),
+    ];
+    for (key, count, most) in counts {
+        if let Some(found) = count.filter(|count| *count > most) {
+            return Err(format!("{key}: found {found}, expected {most} at most in a page"));
+        }
+    }
+    Ok(())
+}
+
 /// True for a setting that only a new load takes in.
 fn is_loaded(key: &str) -> bool {
     let section = key.split(['.', '[']).next().unwrap_or_default();
@@ -322,5 +341,7 @@ fn is_loaded(key: &str) -> bool {
         "look.group",
         "simulation.strands",
     ];
-    !is_live.contains(&section) && key != "groom.length" || of_load.iter().any(|start| key.starts_with(start))
+    let is_of_springs = key.starts_with("simulation.strands.constrain");
+    let is_loaded = of_load.iter().any(|start| key.starts_with(start)) && !is_of_springs;
+    !is_live.contains(&section) && key != "groom.length" || is_loaded
 }

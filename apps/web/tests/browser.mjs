@@ -2,15 +2,28 @@
 // Talks to Chromium by its pipe (DevTools protocol). With a folder for PICTURES the page is kept as it looks.
 
 import { spawn } from "node:child_process";
+import { createServer, get } from "node:http";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 
-const [folder, chromium, address, pictures] = process.argv.slice(2);
+const [folder, chromium, server, pictures] = process.argv.slice(2);
 // Milliseconds that a thing may take on a busy machine, and that the whole may take.
 const PATIENCE = 60_000;
 const MOST = 280_000;
+
+// The server behind a gate: while it is shut there is no network.
+let shut = false;
+const gate = createServer((request, response) => {
+  if (shut) return request.socket.destroy();
+  get(server + request.url.slice(1), (answer) => {
+    response.writeHead(answer.statusCode, answer.headers);
+    answer.pipe(response);
+  }).on("error", () => request.socket.destroy());
+});
+await new Promise((resolve) => { gate.listen(0, "127.0.0.1", resolve); });
+const address = `http://127.0.0.1:${gate.address().port}/`;
 
 const profile = mkdtempSync(join(tmpdir(), "strandline-web-"));
 const flags = [
@@ -72,7 +85,7 @@ let page;
 const pause = (milliseconds) => new Promise((resolve) => { setTimeout(resolve, milliseconds); });
 // The value of an expression in the page, `seen` of its script among its names.
 async function value(expression) {
-  const whole = `import("./page.js").then(({ seen }) => (${expression}))`;
+  const whole = `import("./stage.js").then(({ seen }) => (${expression}))`;
   const { result, exceptionDetails } = await send("Runtime.evaluate", { expression: whole, awaitPromise: true, returnByValue: true });
   if (exceptionDetails) throw new Error(`${expression}: ${exceptionDetails.exception?.description}`);
   return result.value;
@@ -109,10 +122,10 @@ async function difference(bytes, width, height) {
   })()`);
 }
 
-async function opens(hash) {
+async function opens(hash, file = "") {
   const begin = Date.now();
   await send("Page.navigate", { url: "about:blank" });
-  await send("Page.navigate", { url: `${address}${hash}` });
+  await send("Page.navigate", { url: `${address}${file}${hash}` });
   await pause(100);
   await until("document.getElementById('progress').hidden");
   return (Date.now() - begin) / 1e3;
@@ -173,8 +186,17 @@ async function test() {
   await mouse("mouseReleased", ...at(0.02, 0.02));
 
   // Keys, and settings that the link carries.
+  const key = (name) => send("Input.dispatchKeyEvent", { type: "keyDown", key: name, code: name });
   await value("document.getElementById('hair').focus()");
-  await send("Input.dispatchKeyEvent", { type: "keyDown", key: "ArrowRight", code: "ArrowRight" });
+  await value("seen.grabbed = undefined");
+  await key("Enter");
+  await until("seen.grabbed === true");
+  for (let step = 0; step < 5; step += 1) await key("ArrowRight");
+  await until("seen.figures.still === false");
+  await key("Enter");
+  await until("document.getElementById('hint').textContent.includes('Drag')");
+  held(!(await value("location.hash")).includes("motion.rotation"), "Enter takes hair, and arrow keys pull it");
+  await key("ArrowRight");
   await until("location.hash.includes('motion.rotation')");
   held(true, "an arrow key turns the head");
   await value("document.querySelector('[value=red]').click()");
@@ -196,7 +218,46 @@ async function test() {
   await until("seen.opened === 'cut.obj' || seen.refused.length > 2");
   held(await value("seen.opened === 'cut.obj'"), `a groom is opened: ${await value("seen.refused.slice(2).join()")}`);
 
-  // A link that is wrong.
+  // A tab that is hidden for a while.
+  await opens("#motion.name=shake&style.strand_count=64");
+  await until("seen.figures?.rate > 0");
+  const { targetId: other } = await send("Target.createTarget", { url: "about:blank" }, undefined);
+  await send("Target.activateTarget", { targetId: other }, undefined);
+  await send("Page.setWebLifecycleState", { state: "frozen" });
+  await pause(3000);
+  await send("Page.setWebLifecycleState", { state: "active" });
+  await send("Target.activateTarget", { targetId: target.targetId }, undefined);
+  await send("Target.closeTarget", { targetId: other }, undefined);
+  await value("document.dispatchEvent(new Event('visibilitychange'))");
+  await value("seen.figures = undefined");
+  await until("seen.figures?.rate > 0 && !seen.figures.still");
+  held((await value("seen.refused.length")) === 0, "a tab that was hidden goes on");
+
+  // "How it works".
+  await opens("", "how.html");
+  for (let stage = 2; stage <= 8; stage += 1) {
+    await value("document.getElementById('next').click()");
+    await pause(100);
+  }
+  await until("seen.given.join().includes('simulation.volume.enabled,true')");
+  await until("seen.figures?.strands === 240");
+  held((await value("document.getElementById('next').disabled && seen.refused.join()")) === "", "each stage is switched on");
+  await look("how");
+
+  // Without a network.
+  await value("navigator.serviceWorker.ready.then(() => true)");
+  shut = true;
+  gate.closeAllConnections();
+  for (const file of ["", "index.html", "how.html"]) await opens("#style.style=bob&style.strand_count=64", file);
+  await until("seen.figures?.rate > 0");
+  shut = false;
+  held(true, "the page opens without a network after its first visit");
+
+  // Links that are wrong.
+  await opens("#style.strand_count=1000000");
+  await until("seen.refused.some((text) => text.includes('20000 at most'))");
+  await until("seen.figures?.strands === 400");
+  held(true, "a link that asks for a million strands is refused with a message, and the page opens");
   await opens("#style.stile=bob");
   await until("seen.refused.some((text) => text.includes('style.stile'))");
   held(true, "a wrong link is refused by its key, and the page opens");

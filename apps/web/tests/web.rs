@@ -67,6 +67,9 @@ fn what_is_refused_leaves_the_page_as_it_was() {
         ("page.color", "red", "page.color"),
         ("groom.file", "secret.hair", "drop them"),
         ("simulation.time_step", "-1", "time_step"),
+        ("style.strand_count", "1000000", "expected 20000 at most in a page"),
+        ("groom.guides", "20001", "groom.guides: found 20001"),
+        ("groom.bound", "1000000", "groom.bound"),
     ];
     for (key, value, named) in refusals {
         let error = page.set(key, value).unwrap_err();

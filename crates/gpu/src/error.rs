@@ -18,6 +18,16 @@ pub enum GpuError {
     /// A page opens no device without waiting for it.
     #[error("a page cannot wait for a GPU: await `Gpu::request`")]
     Page,
+    /// The call would wait for the device, and the host never waits ([`crate::Gpu::never_wait`]).
+    #[error(
+        "{what} would wait for {adapter}, and this host never waits: ask for it, and take it when it has arrived"
+    )]
+    WouldWait {
+        /// The adapter's name.
+        adapter: String,
+        /// Wanted data.
+        what: String,
+    },
     /// The adapter or WebGPU's default limits do not allow it.
     #[error("{adapter}: {what} needs {needed}, but the limit is {limit}")]
     Limit {

@@ -191,6 +191,11 @@ impl Journal {
         self.coming = Some((coming, self.last.entries.len()));
     }
 
+    /// True if a read of the device's current state is pending.
+    pub fn is_coming(&self) -> bool {
+        self.coming.as_ref().is_some_and(|(_, count)| *count == self.last.entries.len())
+    }
+
     /// Drops the pending read.
     pub fn recall(&mut self) {
         self.coming = None;

@@ -27,6 +27,25 @@ impl ComingState {
     }
 }
 
+/// Positions of two states on their way to the host.
+#[derive(Debug)]
+pub enum ComingPoints {}
+
+#[expect(missing_docs, clippy::missing_errors_doc, reason = "none of it can be called")]
+impl ComingPoints {
+    pub fn begin([before, _]: [&Buffer<f32>; 2]) -> Result<Self, GpuError> {
+        match *before.gpu() {}
+    }
+
+    pub fn has_arrived(&self) -> Result<bool, GpuError> {
+        match *self {}
+    }
+
+    pub fn write(self, _: f32, _: &mut Vec<Vec3Lanes>) -> Result<(), GpuError> {
+        match self {}
+    }
+}
+
 /// No shader modules.
 pub fn modules() -> Vec<(&'static str, &'static str)> {
     Vec::new()
@@ -71,6 +90,14 @@ impl GpuRunner {
     }
 
     pub fn set_settings(&mut self, _: &Settings) -> Result<(), SimError> {
+        match *self {}
+    }
+
+    pub(crate) fn set_settings_at(&mut self, _: &Settings, _: &State) -> Result<(), SimError> {
+        match *self {}
+    }
+
+    pub(crate) fn runs_on_way(&self) -> usize {
         match *self {}
     }
 

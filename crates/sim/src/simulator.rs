@@ -140,6 +140,46 @@ impl Simulator {
         Ok(self.journal.state())
     }
 
+    /// True where [`Simulator::state`] would not wait. Else the state is asked for, and a later call finds it, unless steps
+    /// are made between the two.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn has_state(&mut self) -> Result<bool, SimError> {
+        if self.journal.is_current() {
+            return Ok(true);
+        }
+        self.find()?;
+        let Runner::Gpu(runner) = &mut self.runner else { return Ok(true) };
+        self.reports.keep(runner.arrived_reports()?);
+        self.journal.receive(self.reports.reported, runner.model());
+        let is_there = self.journal.is_current();
+        if !is_there && !self.journal.is_coming() {
+            self.journal.send(runner.begin_read()?);
+        }
+        Ok(is_there)
+    }
+
+    /// Runs of steps that a device has not reported yet: 0 on the CPU. Never waits.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn runs_on_way(&mut self) -> Result<usize, SimError> {
+        self.find()?;
+        let Runner::Gpu(runner) = &mut self.runner else { return Ok(0) };
+        self.reports.keep(runner.arrived_reports()?);
+        Ok(runner.runs_on_way())
+    }
+
+    /// Never reports the steps that were made so far, however late their reports come.
+    pub fn discard_reports(&mut self) {
+        if let Runner::Gpu(runner) = &mut self.runner {
+            runner.forget_reports();
+        }
+        let steps = self.journal.steps();
+        self.reports = Reports { reported: steps, next: steps, kept: Vec::new() };
+    }
+
     /// The state as it was last read: what a lost device leaves.
     pub fn last_state(&self) -> &State {
         self.journal.state()
@@ -235,6 +275,8 @@ impl Simulator {
         }
         match &mut self.runner {
             Runner::Cpu(runner) => runner.set_settings(settings)?,
+            // The state was read above.
+            Runner::Gpu(runner) if other => runner.set_settings_at(settings, self.journal.state())?,
             Runner::Gpu(runner) => runner.set_settings(settings)?,
         }
         self.journal.set(settings);

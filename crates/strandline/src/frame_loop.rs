@@ -1,18 +1,25 @@
 //! Hair in a loop of the host: frame after frame on the thread of the caller, as a browser page and an engine have it.
 
+use std::collections::VecDeque;
+
 use glam::Vec3;
 
 use crate::{
     Change, Devices, Error, Event, Prepared, Scene,
     body::Aabb,
+    gpu::Gpu,
     prepare::center,
     render::{Camera, FrameReport, Light, Look, Picture},
-    session::{Draft, Inline, Session},
+    session::{AskedPoints, Draft, Inline, Session},
 };
 
 /// Hair that a person directs, driven by the host's own loop: a call for each frame of a sixtieth of a second, one for each
-/// picture, and [`Change`]s between them. It has no thread of its own. On the CPU no call waits; on a GPU those that read
-/// points do.
+/// picture, and [`Change`]s between them. It has no thread of its own.
+///
+/// On the CPU every change takes place at once. On a GPU a change that reads hair (a grab, a reset, another strand solver) is
+/// a request: the hair stands still until it has arrived, a frame or two, while pictures go on, and the changes of the motion
+/// that come after it follow it. [`FrameLoop::points`] and [`FrameLoop::picture`] alone wait for a GPU; where the host has
+/// called [`Gpu::never_wait`] they are errors, and [`FrameLoop::arrived_points`] and `FrameLoop::draw_to` stand in for them.
 ///
 /// ```
 /// use strandline::{Backend, Change, FrameLoop, Prepared, Ray, Scene};
@@ -33,6 +40,9 @@ use crate::{
 /// ```
 pub struct FrameLoop {
     session: Session<Inline>,
+    /// Changes that wait for what they read, in their order.
+    asked: VecDeque<Change>,
+    asked_points: Option<AskedPoints>,
 }
 
 impl FrameLoop {
@@ -41,25 +51,69 @@ impl FrameLoop {
     /// # Errors
     /// A setting of the scene outside its range; a device that is named and not there.
     pub fn open(prepared: Prepared, devices: impl Into<Devices>) -> Result<Self, Error> {
-        Ok(Self { session: Session::open(prepared, devices.into())? })
+        Ok(Self::of(Session::open(prepared, devices.into())?))
     }
 
-    /// Lets a sixtieth of a second pass, or less where the steps are so short that it would take many.
+    /// A loaded scene on a device that the host owns ([`Gpu`]`::from_parts`), which draws and simulates it.
     ///
     /// # Errors
-    /// The GPU failed, and falling back to the CPU is not allowed.
-    pub fn frame(&mut self) -> Result<(), Error> {
-        self.session.start_frame(0)?;
-        self.take()
+    /// A setting of the scene outside its range; whatever the device refuses.
+    pub fn with_device(prepared: Prepared, gpu: &Gpu) -> Result<Self, Error> {
+        Ok(Self::of(Session::open_with(prepared, gpu)?))
     }
 
-    /// Applies a change at once.
+    fn of(session: Session<Inline>) -> Self {
+        Self { session, asked: VecDeque::new(), asked_points: None }
+    }
+
+    /// Lets a sixtieth of a second pass, or less where the steps are so short that it would take many. Returns false where
+    /// no time has passed: a change waits for what it reads, or the GPU is some frames behind.
+    ///
+    /// # Errors
+    /// A change that has waited is refused; the GPU failed, and falling back to the CPU is not allowed.
+    pub fn frame(&mut self) -> Result<bool, Error> {
+        if !self.make_changes()? || self.session.is_behind()? {
+            return Ok(false);
+        }
+        self.session.start_frame(0)?;
+        self.take()?;
+        Ok(true)
+    }
+
+    /// Makes a change at once, or as soon as what it reads has arrived from a GPU.
     ///
     /// # Errors
     /// The change is refused, and nothing has changed.
     pub fn change(&mut self, change: Change) -> Result<(), Error> {
-        self.session.change(change)?;
-        self.take()
+        if change.is_of_picture() {
+            return self.session.change(change);
+        }
+        if let Change::Settings(settings) = &change {
+            settings.check()?;
+        }
+        match (self.asked.back_mut(), change) {
+            (Some(Change::Drag(last)), Change::Drag(ray)) => *last = ray,
+            (_, change) => self.asked.push_back(change),
+        }
+        self.make_changes().map(drop)
+    }
+
+    /// Makes the changes that can be made without a wait; true where none is left.
+    fn make_changes(&mut self) -> Result<bool, Error> {
+        while let Some(change) = self.asked.pop_front() {
+            if !self.session.is_ready_for(&change)? {
+                self.asked.push_front(change);
+                return Ok(false);
+            }
+            self.session.change(change)?;
+            self.take()?;
+        }
+        Ok(true)
+    }
+
+    /// Changes that wait for what they read.
+    pub fn waiting(&self) -> usize {
+        self.asked.len()
     }
 
     /// Takes the results of what was started.
@@ -68,6 +122,21 @@ impl FrameLoop {
             self.session.take()?;
         }
         Ok(())
+    }
+
+    /// Draws the present state into a texture of the host, on whose device the hair is ([`FrameLoop::with_device`]); its size
+    /// is that of the pictures ([`Change::Picture`]), and it is seen in `format`. Submits the work and waits for nothing:
+    /// the report has no times.
+    ///
+    /// # Errors
+    /// A texture of another size; pictures that the CPU draws; a setting outside its range; whatever the device refuses.
+    #[cfg(feature = "gpu")]
+    pub fn draw_to(
+        &mut self,
+        target: &crate::gpu::wgpu::TextureView,
+        format: crate::gpu::wgpu::TextureFormat,
+    ) -> Result<FrameReport, Error> {
+        self.session.draw_to(target, format)
     }
 
     /// Draws the present state, simpler and smaller with a coarseness of 0 to 3.
@@ -134,5 +203,25 @@ impl FrameLoop {
     /// The GPU failed, and falling back to the CPU is not allowed.
     pub fn points(&mut self) -> Result<&[Vec3], Error> {
         self.session.points()
+    }
+
+    /// Points of the guides \[m\], world space, shape `[strand][point]`, without a wait: on a GPU the first call asks for those
+    /// of that moment, and a later one finds them. `None` while they are on their way.
+    ///
+    /// # Errors
+    /// The GPU failed.
+    pub fn arrived_points(&mut self) -> Result<Option<&[Vec3]>, Error> {
+        let asked = match self.asked_points.take() {
+            Some(asked) => asked,
+            None => match self.session.ask_points()? {
+                Some(asked) => asked,
+                None => return self.session.points().map(Some),
+            },
+        };
+        if asked.have_arrived()? {
+            return self.session.take_points(asked).map(Some);
+        }
+        self.asked_points = Some(asked);
+        Ok(None)
     }
 }

@@ -67,6 +67,8 @@ pub mod mesh {
 /// GPUs.
 pub mod device {
     pub use crate::gpu::{Crossed, Gpu, GpuError};
+    #[cfg(feature = "gpu")]
+    pub use crate::gpu::{Wanted, wgpu};
 
     /// The linked shader modules, each with its name.
     pub fn shader_modules() -> Vec<(&'static str, &'static str)> {

@@ -1,5 +1,5 @@
 use std::collections::HashMap;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -27,6 +27,8 @@ struct Shared {
     crossed: [AtomicU64; 2],
     /// Times that the host waited for the device.
     waits: AtomicU64,
+    /// True where the host never waits for the device.
+    never_waits: AtomicBool,
     kernels: Mutex<HashMap<String, Compiled>>,
 }
 
@@ -104,7 +106,21 @@ impl Gpu {
     fn new(device: wgpu::Device, queue: wgpu::Queue, adapter: Adapter, errors: Arc<Errors>) -> Self {
         let memory = Mutex::new(Memory { used: 0, most: u64::MAX });
         let (crossed, waits, kernels) = Default::default();
-        Self { shared: Arc::new(Shared { device, queue, adapter, errors, memory, crossed, waits, kernels }) }
+        // A page cannot wait.
+        let never_waits = AtomicBool::new(cfg!(target_family = "wasm"));
+        Self {
+            shared: Arc::new(Shared {
+                device,
+                queue,
+                adapter,
+                errors,
+                memory,
+                crossed,
+                waits,
+                never_waits,
+                kernels,
+            }),
+        }
     }
 
     async fn start(found: &wgpu::Adapter, adapter: Adapter) -> Result<Self, GpuError> {
@@ -188,6 +204,23 @@ impl Gpu {
         self.shared.waits.load(Relaxed)
     }
 
+    /// Makes every call that would wait for the device an error ([`GpuError::WouldWait`]) from now on, for all clones: for
+    /// hosts whose loop must not stop. A page is such a host from the beginning.
+    pub fn never_wait(&self) {
+        self.shared.never_waits.store(true, Relaxed);
+    }
+
+    /// Tells whether a call may wait for something.
+    ///
+    /// # Errors
+    /// The host never waits.
+    pub fn check_wait(&self, what: &str) -> Result<(), GpuError> {
+        if self.shared.never_waits.load(Relaxed) {
+            return Err(GpuError::WouldWait { adapter: self.name(), what: what.to_owned() });
+        }
+        Ok(())
+    }
+
     pub(crate) fn count_to_device(&self, bytes: usize) {
         self.shared.crossed[0].fetch_add(bytes as u64, Relaxed);
     }
@@ -265,6 +298,7 @@ impl Gpu {
     /// Waits until a submission is done, or everything that was submitted.
     pub(crate) fn wait_for(&self, submission_index: Option<wgpu::SubmissionIndex>) -> Result<(), GpuError> {
         self.check()?;
+        self.check_wait("the call")?;
         self.shared.waits.fetch_add(1, Relaxed);
         let patience = wgpu::PollType::Wait { submission_index, timeout: Some(PATIENCE) };
         let polled = self.surviving(|| self.device().poll(patience))?;

@@ -51,6 +51,7 @@ impl<'a> Readback<'a> {
     /// # Errors
     /// The device was lost or has no memory left.
     pub fn read(self, gpu: &Gpu) -> Result<Copied, GpuError> {
+        gpu.check_wait("a copy back")?;
         self.begin(gpu)?.wait()
     }
 
@@ -128,6 +129,7 @@ impl Download {
         look: impl FnOnce(&[u8]) -> T,
     ) -> Result<T, GpuError> {
         let gpu = &self.held.gpu;
+        gpu.check_wait("a copy back")?;
         let mut mapping = Mapping::new(&self.staging, submission);
         mapping.wait(gpu)?;
         let view = mapped(gpu, &self.staging)?;

@@ -180,6 +180,7 @@ impl GpuRenderer {
         points: Option<DevicePoints>,
         picture: &mut Picture,
     ) -> Result<FrameReport, RenderError> {
+        self.gpu.check_wait("a picture in memory")?;
         let own = match self.own.take() {
             Some(own) => own,
             None => Own::new(&self.gpu, &self.settings)?,

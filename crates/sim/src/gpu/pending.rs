@@ -61,11 +61,17 @@ impl Pending {
         Ok(())
     }
 
+    /// Runs whose reports have not arrived.
+    pub fn on_way(&self) -> usize {
+        self.on_way.len()
+    }
+
     /// Takes the reports that have arrived, in the order of their steps.
-    pub fn arrived(&mut self) -> Result<Vec<Reported>, GpuError> {
+    pub fn arrived(&mut self, gpu: &Gpu) -> Result<Vec<Reported>, GpuError> {
+        let most = if gpu.check_wait("reports").is_ok() { ON_WAY } else { usize::MAX };
         let mut found = Vec::new();
         while let Some(first) = self.on_way.pop_front() {
-            if self.on_way.len() < ON_WAY && !first.transfer.has_arrived()? {
+            if self.on_way.len() < most && !first.transfer.has_arrived()? {
                 self.on_way.push_front(first);
                 break;
             }

@@ -34,7 +34,7 @@ pub struct GpuRunner {
     /// Which of the two buffers of positions is the newer.
     pub(super) side: usize,
     /// The stages bound to the buffers, in order, for both sides; `None` after a change.
-    bound: Option<[Vec<(Stage, Dispatches)>; 2]>,
+    pub(super) bound: Option<[Vec<(Stage, Dispatches)>; 2]>,
     pub(super) body: BodyFrame,
     pub(super) time: f64,
     pub(super) length_scale: Vec<Lanes>,
@@ -162,7 +162,8 @@ impl GpuRunner {
         self.gpu.check()?;
         let change = self.model.settings.change_to(settings);
         if change.buffers {
-            return self.rebuild(settings);
+            self.drain()?;
+            return self.rebuild(settings, &self.state()?);
         }
         self.model.set_settings(settings)?;
         if change.masses {
@@ -174,16 +175,6 @@ impl GpuRunner {
         if change.stages || change.masses && self.model.rest_density().is_some() {
             self.bound = None;
         }
-        Ok(())
-    }
-
-    /// Waits for the state and begins with it in other buffers: another strand solver has others.
-    fn rebuild(&mut self, settings: &Settings) -> Result<(), SimError> {
-        self.drain()?;
-        let (state, mut model) = (self.state()?, self.model.clone());
-        model.set_settings(settings)?;
-        self.buffers = Buffers::new(&self.gpu, &model, &state)?;
-        (self.model, self.side, self.bound) = (model, 0, None);
         Ok(())
     }
 
@@ -212,13 +203,13 @@ impl GpuRunner {
     }
 
     /// The reports that have arrived by now, in the order of their steps; those of the last steps are sent on their
-    /// way. Waits only where many runs are on their way.
+    /// way. Waits only where many runs are on their way, and never for a host that never waits.
     ///
     /// # Errors
     /// The device was lost.
     pub fn arrived_reports(&mut self) -> Result<Vec<StepReport>, SimError> {
         self.pending.send(&self.gpu, &self.buffers.reports)?;
-        let found = self.pending.arrived()?;
+        let found = self.pending.arrived(&self.gpu)?;
         self.keep(found);
         Ok(std::mem::take(&mut self.reports))
     }

@@ -6,13 +6,43 @@ use glam::Vec3;
 use strandline_body::BodyFrame;
 use strandline_gpu::{Copied, Readback, Slot, Transfer};
 
+use super::buffers::Buffers;
 use super::buffers::{floats, floats_mut, speeds};
 use super::runner::GpuRunner;
 use super::volume::GridState;
 use crate::grab::Grab;
-use crate::{SimError, State};
+use crate::{Settings, SimError, State};
 
 impl GpuRunner {
+    /// As [`GpuRunner::set_settings`] where the current state was read: another strand solver begins with it, and nothing
+    /// waits.
+    ///
+    /// # Errors
+    /// As there.
+    pub(crate) fn set_settings_at(&mut self, settings: &Settings, state: &State) -> Result<(), SimError> {
+        if !self.model.settings.change_to(settings).buffers {
+            return self.set_settings(settings);
+        }
+        settings.check_on_gpu()?;
+        self.gpu.check()?;
+        self.pending.send(&self.gpu, &self.buffers.reports)?;
+        self.rebuild(settings, state)
+    }
+
+    /// Begins with the current state in other buffers: another strand solver has others.
+    pub(super) fn rebuild(&mut self, settings: &Settings, state: &State) -> Result<(), SimError> {
+        let mut model = self.model.clone();
+        model.set_settings(settings)?;
+        self.buffers = Buffers::new(&self.gpu, &model, state)?;
+        (self.model, self.side, self.bound) = (model, 0, None);
+        Ok(())
+    }
+
+    /// Runs of steps whose reports have not arrived.
+    pub(crate) fn runs_on_way(&self) -> usize {
+        self.pending.on_way()
+    }
+
     /// Waits for the device and copies the state back.
     ///
     /// # Errors

@@ -13,7 +13,7 @@ use crate::{
     groom::{Groom, Guides},
     render::{BodyLook, Camera, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings},
     scene::GroomSection,
-    scene::devices::{Opened, Pair, device_name},
+    scene::devices::{Pair, device_name},
     session::{Change, Inline, Session, film_timing::FilmTiming},
     sim::{Settings, State, StepReport},
     strands::tags::Tags,
@@ -98,9 +98,7 @@ impl Hair {
         colliders: Vec<Collider>,
         settings: &Settings,
     ) -> Result<Self, Error> {
-        let opened = || Opened { gpu: Some(gpu.clone()), fall_back: false };
-        let pair = Pair { simulation: opened(), pictures: opened(), notes: Vec::new() };
-        Ok(Self::of(Session::new(pair, guides, None, mesh, colliders, settings)?))
+        Ok(Self::of(Session::new(Pair::of(gpu), guides, None, mesh, colliders, settings)?))
     }
 
     fn of(session: Session<Inline>) -> Self {

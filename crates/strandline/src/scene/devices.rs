@@ -33,6 +33,14 @@ pub(crate) struct Pair {
     pub notes: Vec<String>,
 }
 
+impl Pair {
+    /// A device of the host for both: nothing falls back to the CPU.
+    pub(crate) fn of(gpu: &Gpu) -> Self {
+        let opened = || Opened { gpu: Some(gpu.clone()), fall_back: false };
+        Self { simulation: opened(), pictures: opened(), notes: Vec::new() }
+    }
+}
+
 impl Devices {
     /// Opens both; the same adapter once.
     pub(crate) fn open(self) -> Result<Pair, GpuError> {

@@ -38,3 +38,25 @@ pub enum Change {
     /// Lets go of the hair.
     Release,
 }
+
+impl Change {
+    /// True for a change of what is drawn, or of the air, that no state of the hair decides.
+    pub(crate) fn is_of_picture(&self) -> bool {
+        match self {
+            Self::Camera(_)
+            | Self::Look(_)
+            | Self::BodyLook(_)
+            | Self::Lights(_)
+            | Self::LevelOfDetail(_)
+            | Self::Picture(_)
+            | Self::Wind(_) => true,
+            Self::Reset
+            | Self::Settings(_)
+            | Self::Length(_)
+            | Self::Motion(_)
+            | Self::Grab(..)
+            | Self::Drag(_)
+            | Self::Release => false,
+        }
+    }
+}

@@ -86,6 +86,21 @@ impl Engine {
         self.guarded(Simulator::reports)
     }
 
+    /// True where [`Engine::state`] would not wait; else the state is asked for.
+    pub fn has_state(&mut self) -> Result<bool, SimError> {
+        self.guarded(Simulator::has_state)
+    }
+
+    /// Runs of steps that a device has not reported yet.
+    pub fn runs_on_way(&mut self) -> Result<usize, SimError> {
+        self.guarded(Simulator::runs_on_way)
+    }
+
+    /// Never reports the steps that were made so far.
+    pub fn discard_reports(&mut self) {
+        self.simulator.discard_reports();
+    }
+
     /// The state after a step whose device was lost: see [`Simulator::state_after`].
     pub fn state_after(&self, step: u64) -> Cow<'_, State> {
         self.simulator.state_after(step)

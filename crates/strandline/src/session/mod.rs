@@ -1,6 +1,7 @@
 //! A session: hair that moves and is drawn. Commands, which are data, go in; events come out. `Hair`, `Player` and
 //! `Live` are its faces.
 
+mod asking;
 mod bookmark;
 mod change;
 mod direction;
@@ -31,6 +32,7 @@ pub(crate) mod worker;
 #[cfg(test)]
 mod worker_tests;
 
+pub(crate) use asking::AskedPoints;
 pub(crate) use bookmark::Bookmark;
 pub use change::Change;
 pub(crate) use draft::Draft;

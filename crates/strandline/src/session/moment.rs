@@ -8,7 +8,10 @@ use crate::{
     body::BodyFrame,
     groom::{LANES, Vec3Lanes},
     render::gpu::DevicePoints,
-    sim::{State, gpu::read_between},
+    sim::{
+        State,
+        gpu::{ComingPoints, read_between},
+    },
 };
 
 /// The points of the guides between two states, where the picture needs them: on its device, or on the host.
@@ -17,6 +20,8 @@ pub(crate) struct Moment {
     /// Guide points \[m\], seen from the origin, shape `[block][point]` of lanes; old ones while `device` alone has them.
     positions: Vec<Vec3Lanes>,
     on_host: bool,
+    /// The points on their way to the host.
+    coming: Option<ComingPoints>,
     device: Option<OnDevice>,
     /// Body, seen from the origin.
     pub body: BodyFrame,
@@ -65,11 +70,29 @@ impl Moment {
         Ok(())
     }
 
+    /// True where the points are on the host. Else they are asked for, and a later call finds them; never waits.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn has_come_home(&mut self) -> Result<bool, GpuError> {
+        let Some(OnDevice { before, after }) = self.device.as_ref().filter(|_| !self.on_host) else {
+            return Ok(true);
+        };
+        let coming = self.coming.take().map_or_else(|| ComingPoints::begin([before, after]), Ok)?;
+        if !coming.has_arrived()? {
+            self.coming = Some(coming);
+            return Ok(false);
+        }
+        coming.write(self.at.share, &mut self.positions)?;
+        self.on_host = true;
+        Ok(true)
+    }
+
     /// Takes points that were kept, and their body; none lie on a device then.
     pub fn hold(&mut self, positions: &[Vec3Lanes], body: &BodyFrame, origin: Vec3) {
         self.positions.clear();
         self.positions.extend_from_slice(positions);
-        (self.on_host, self.device, self.between) = (true, None, None);
+        (self.on_host, self.device, self.between, self.coming) = (true, None, None, None);
         (self.body, self.origin) = (body.clone(), origin);
     }
 
@@ -79,7 +102,7 @@ impl Moment {
             Some(bodies) => carried(state, bodies, &self.body, self.at.share, &mut self.positions),
             None => state.interpolated(self.at.share, &mut self.positions),
         }
-        (self.on_host, self.device) = (true, None);
+        (self.on_host, self.device, self.coming) = (true, None, None);
     }
 
     /// Copies the points on their device, so that the next step may begin while they are drawn.
@@ -92,7 +115,7 @@ impl Moment {
             },
         };
         gpu.copy("copying points", [[before, &copy.before], [after, &copy.after]])?;
-        (self.device, self.on_host) = (Some(copy), false);
+        (self.device, self.on_host, self.coming) = (Some(copy), false, None);
         Ok(())
     }
 }

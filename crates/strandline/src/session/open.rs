@@ -4,6 +4,7 @@ use std::{collections::VecDeque, sync::Arc};
 
 use glam::Vec3;
 use strandline_base::{Group, par::Pool};
+use strandline_gpu::{Gpu, GpuError};
 
 use super::{
     Inline, Session, Simulation, View, direction::Direction, engine::Engine, kept::Kept, moment::Moment,
@@ -97,6 +98,18 @@ impl Session<Inline> {
     /// # Errors
     /// A setting of the scene outside its range.
     pub fn open(prepared: Prepared, devices: Devices) -> Result<Self, Error> {
+        Self::open_on(prepared, || devices.open())
+    }
+
+    /// As [`Session::open`], simulated and drawn on a device that the host owns.
+    ///
+    /// # Errors
+    /// As there; whatever the device refuses.
+    pub fn open_with(prepared: Prepared, gpu: &Gpu) -> Result<Self, Error> {
+        Self::open_on(prepared, || Ok(Pair::of(gpu)))
+    }
+
+    fn open_on(prepared: Prepared, open: impl FnOnce() -> Result<Pair, GpuError>) -> Result<Self, Error> {
         // Settings of pictures too are refused before the first picture.
         prepared.scene.check()?;
         let picture = prepared.scene.picture;
@@ -106,7 +119,7 @@ impl Session<Inline> {
         let bound =
             bound.map(|bound| if origin == Vec3::ZERO { bound } else { bound.among(colliders.clone()) });
         let head = head.seen_from(origin);
-        let pair = devices.open()?;
+        let pair = open()?;
         let hairs = hairs_of_a_guide(&scene, &guides);
         let settings = with_hairs(&scene.simulation, hairs);
         let mut session = Self::new(pair, guides, bound, mesh.as_ref(), colliders, &settings)?;

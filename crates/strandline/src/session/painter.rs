@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+#[cfg(feature = "gpu")]
+use strandline_base::SettingError;
 use strandline_gpu::Gpu;
 
 use crate::{
@@ -148,6 +150,28 @@ impl Painter {
             drawn => drawn,
         };
         Ok((picture, report?))
+    }
+
+    /// Draws a picture into a texture of the host on the device of the pictures, and does not wait for it.
+    #[cfg(feature = "gpu")]
+    pub fn draw_to(
+        &mut self,
+        input: &FrameInput,
+        points: Option<DevicePoints>,
+        target: &strandline_gpu::wgpu::TextureView,
+        format: strandline_gpu::wgpu::TextureFormat,
+    ) -> Result<FrameReport, RenderError> {
+        match &mut self.place {
+            Place::Gpu(renderer) => {
+                renderer.show_layers(self.layers_of);
+                renderer.draw_to(input, points, target, format)
+            }
+            Place::Cpu(_) => {
+                let found = "pictures that the CPU draws".to_owned();
+                let expected = "hair on the device of the texture, as `FrameLoop::with_device` opens it";
+                Err(SettingError::new("the target texture", found, expected).into())
+            }
+        }
     }
 
     /// Draws on the CPU, where there is a renderer for it.

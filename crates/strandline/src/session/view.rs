@@ -10,6 +10,9 @@ use crate::{
 
 use super::moment::Moment;
 
+#[cfg(feature = "gpu")]
+use strandline_gpu::wgpu;
+
 /// A renderer, with the view, the look and the lights of its pictures.
 pub(crate) struct View {
     pub(super) guides: Guides,
@@ -75,6 +78,26 @@ impl View {
 
     /// Draws a moment from its points on their device, or on the host where `at_home`.
     pub fn draw(&mut self, moment: &Moment, at_home: bool) -> Result<(Picture, FrameReport), RenderError> {
+        self.with_input(moment, |painter, input| {
+            painter.draw(input, moment.device_points().filter(|_| !at_home))
+        })
+    }
+
+    /// Draws a moment into a texture of the host.
+    #[cfg(feature = "gpu")]
+    pub fn draw_to(
+        &mut self,
+        moment: &Moment,
+        target: &wgpu::TextureView,
+        format: wgpu::TextureFormat,
+    ) -> Result<FrameReport, RenderError> {
+        self.with_input(moment, |painter, input| {
+            painter.draw_to(input, moment.device_points(), target, format)
+        })
+    }
+
+    /// Passes the painter the input of a moment's picture.
+    fn with_input<T>(&mut self, moment: &Moment, draw: impl FnOnce(&mut Painter, &FrameInput) -> T) -> T {
         let origin = moment.origin;
         let camera = self.camera.seen_from(origin);
         let lights: Vec<Light> = self.lights.iter().map(|light| light.seen_from(origin)).collect();
@@ -87,6 +110,6 @@ impl View {
             lights: &lights,
             level_of_detail: &self.level_of_detail,
         };
-        self.painter.draw(&input, moment.device_points().filter(|_| !at_home))
+        draw(&mut self.painter, &input)
     }
 }

@@ -8,6 +8,7 @@ mod crossed;
 mod export_time;
 mod far;
 mod frame_loop;
+mod host_device;
 mod keyed_solids;
 mod live;
 mod moving;
