@@ -4,6 +4,7 @@ mod air;
 mod angles;
 mod attributes;
 mod bound;
+mod bundles;
 mod cells;
 mod contact;
 mod curl;

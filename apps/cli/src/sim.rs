@@ -41,6 +41,8 @@ pub struct SimReport {
     pub stiffest: f32,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rods: Option<Rods>,
+    /// `None` where strands pass through each other.
+    pub contacts: Option<Contacts>,
     #[serde(flatten)]
     pub non_finite: NonFinite,
     pub pcg: Pcg,
@@ -94,6 +96,17 @@ pub struct Rods {
     pub resting: usize,
 }
 
+/// Contacts of strands with each other, of the last step; the deepest and the most crossed of all steps.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Contacts {
+    /// Pairs of segments that press.
+    pub pairs: usize,
+    /// By how much axes were nearer than their wisps are thick.
+    pub deepest_m: f32,
+    /// Pairs whose axes had crossed in one step.
+    pub crossed_max: usize,
+}
+
 /// The conjugate gradients.
 #[derive(Debug, Serialize)]
 pub struct Pcg {
@@ -122,6 +135,7 @@ pub struct Steps {
     /// Mean and largest speed of each step.
     speeds: Vec<(f32, f32)>,
     rods: Option<Rods>,
+    contacts: Option<Contacts>,
     non_finite: NonFinite,
 }
 
@@ -181,6 +195,12 @@ impl Steps {
             rods.unsolved_max = rods.unsolved_max.max(step.unsolved);
             rods.resting = step.resting;
         }
+        if let Some(step) = &report.contacts {
+            let contacts = self.contacts.get_or_insert_default();
+            contacts.pairs = step.pairs;
+            contacts.deepest_m = contacts.deepest_m.max(step.deepest);
+            contacts.crossed_max = contacts.crossed_max.max(step.crossed);
+        }
         self.non_finite.add(report, frame)
     }
 
@@ -211,6 +231,7 @@ impl Steps {
             stiffened: end.stiffening.strands,
             stiffest: end.stiffening.most,
             rods: self.rods,
+            contacts: self.contacts,
             non_finite: self.non_finite.clone(),
             pcg: Pcg {
                 iterations_mean: mean(self.iterations),
@@ -367,6 +388,14 @@ fn print(report: &SimReport) {
             rods.resting,
             rods.unsolved_max,
             rods.residual_max_rad
+        );
+    }
+    if let Some(contacts) = &report.contacts {
+        print_line!(
+            "strands on strands: {} pairs press, deepest {:.2} mm, at most {} crossed in a step",
+            contacts.pairs,
+            1e3 * contacts.deepest_m,
+            contacts.crossed_max
         );
     }
     print_line!("points that are not finite: {}", report.non_finite.points);

@@ -4,6 +4,7 @@
 use strandline_body::BodyFrame;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
+use crate::wisps::pair::Pair;
 use crate::{Model, SimError, State};
 
 /// A state as numbers.
@@ -37,12 +38,25 @@ const SECTIONS: &str = "sections";
 const SPINS: &str = "spins";
 const LENGTH_SCALE: &str = "length_scale";
 const CONTACTS: &str = "contacts";
+const TENSIONS: &str = "tensions";
+const PAIRS: &str = "pairs";
 const VOLUME: &str = "volume";
 
 impl Checkpoint {
     /// Names of all arrays that a state may have.
-    pub const NAMES: [&'static str; 9] =
-        [POSITIONS, PREVIOUS, VELOCITIES, CORRECTIONS, SECTIONS, SPINS, LENGTH_SCALE, CONTACTS, VOLUME];
+    pub const NAMES: [&'static str; 11] = [
+        POSITIONS,
+        PREVIOUS,
+        VELOCITIES,
+        CORRECTIONS,
+        SECTIONS,
+        SPINS,
+        LENGTH_SCALE,
+        CONTACTS,
+        TENSIONS,
+        PAIRS,
+        VOLUME,
+    ];
 
     fn part(&self, name: &'static str) -> Option<&Part> {
         self.parts.iter().find(|part| part.name == name)
@@ -107,6 +121,8 @@ impl State {
             time,
             length_scale,
             contacts,
+            tensions,
+            pairs,
             volume_box,
             // Lengths follow from their scales; a hand lets go.
             lengths: _,
@@ -133,6 +149,8 @@ impl State {
         add(LENGTH_SCALE, &[blocks, LANES], scalars(length_scale));
         let planes = contacts.blocks.first().map_or(0, Vec::len);
         add(CONTACTS, &[blocks, planes, contacts.numbers_per_plane(), LANES], contacts.numbers());
+        add(TENSIONS, &[blocks, points, LANES], scalars(tensions));
+        add(PAIRS, &[pairs.len(), Pair::NUMBERS], pairs.iter().flat_map(Pair::numbers).collect());
         add(VOLUME, &[4], volume_box.iter().flatten().copied().collect());
         Checkpoint { parts, body: body.clone(), time: *time }
     }
@@ -169,6 +187,13 @@ impl State {
         let numbers = contacts.numbers_per_plane();
         if let Ok(Some(numbers)) = from.numbers(CONTACTS, &[blocks, planes, numbers, LANES]) {
             contacts.set_numbers(numbers);
+        }
+        if model.settings.has_contact()
+            && let Some(part) = from.part(PAIRS)
+        {
+            let numbers = from.finite(PAIRS, &[part.numbers.len() / Pair::NUMBERS, Pair::NUMBERS])?;
+            state.pairs = Pair::restored(numbers, state.positions.len(), points)?;
+            state.tensions = to_scalars(from.finite(TENSIONS, &[blocks, points, LANES])?).collect();
         }
         if let Some(numbers) = from.numbers(VOLUME, &[4])? {
             state.volume_box = Some([numbers[0], numbers[1], numbers[2], numbers[3]]);

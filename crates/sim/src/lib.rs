@@ -40,6 +40,7 @@ mod step;
 pub mod strands;
 mod teleport;
 mod wind;
+mod wisps;
 
 pub use checkpoint::{Checkpoint, Part};
 pub use clock::{Clock, Ticks};
@@ -47,7 +48,9 @@ pub use cpu::CpuRunner;
 pub use currents::{Currents, Eddy, Source};
 pub use error::SimError;
 pub use model::Model;
-pub use report::{Drift, Extent, Measures, PressureReport, RodReport, StepReport, Stiffening};
+pub use report::{
+    ContactReport, Drift, Extent, Measures, PressureReport, RodReport, StepReport, Stiffening,
+};
 pub use settings::{
     Drag, Preconditioner, Settings, StrandMethod, StrandSettings, VolumeMethod, VolumeSettings,
 };
@@ -55,6 +58,7 @@ pub use simulator::Simulator;
 pub use state::{Drive, MOST_SPIN, State};
 pub use step::Stage;
 pub use strandline_gpu::Backend;
+pub use wisps::settings::ContactSettings;
 
 /// Settings of strands of springs and constraints.
 pub mod constrain {

@@ -12,6 +12,9 @@ const POINT_BYTES: u64 = 296;
 const ROD_BYTES: u64 = 204;
 /// Further bytes of a point of a rod where hair and solids hold back the air: its velocity there.
 const AIR_BYTES: u64 = 12;
+/// Further bytes of a point of a rod among strands that push each other: its solve, kept from part to part with its
+/// factors twice, its ways, and pairs of dense hair.
+const CONTACT_BYTES: u64 = 1400;
 /// Bytes of a point in the state that hair which rests is compared with: positions now and one step ago, velocities and
 /// their corrections, the planes of two carriers; and of a rod its section and spin.
 const KEPT_BYTES: u64 = 112;
@@ -26,7 +29,8 @@ impl Settings {
         let strands = format!("{points_per_strand} points on each of {strand_count} simulated strands");
         let of_rods = if self.has_rods() { ROD_BYTES + KEPT_ROD_BYTES } else { 0 };
         let of_air = if self.has_shelter() { AIR_BYTES } else { 0 };
-        let bytes = POINT_BYTES + KEPT_BYTES + of_rods + of_air;
+        let of_contact = if self.has_contact() { CONTACT_BYTES } else { 0 };
+        let bytes = POINT_BYTES + KEPT_BYTES + of_rods + of_air + of_contact;
         let mut needs = vec![Need::new(strands, points, bytes)];
         if self.volume.enabled {
             let cells = self.volume.cells;

@@ -12,6 +12,7 @@ use crate::strands::rods::model::{Rods, RodsAtRest};
 use crate::strands::rods::other_lengths::Lengthened;
 use crate::strands::rods::rod::Node;
 use crate::strands::rods::settings::Rest;
+use crate::wisps::radii::AtRest;
 use crate::{Settings, SimError, Stiffening, StrandMethod};
 
 /// All that stages read and that time does not change: rest shape, masses, material, colliders, settings.
@@ -42,6 +43,8 @@ pub struct Model {
     pub(crate) velocities: Vec<Vec3Lanes>,
     /// None with another strand solver.
     pub(crate) rods: Option<Rods>,
+    /// Radius \[m\] of each segment's wisp, shape `[block][point]` of lanes; empty without contact of strands.
+    pub(crate) radii: Vec<Lanes>,
     /// Density \[kg/m^3\] around each point at rest; empty without a one-sided volume.
     rest_density: Vec<Lanes>,
 }
@@ -122,11 +125,13 @@ impl Model {
             velocities: velocities(guides, &rooted),
             hairs,
             rods: None,
+            radii: Vec::new(),
             rest_density: Vec::new(),
         };
         model.weigh();
         model.compile_rods();
         model.pack();
+        model.thicken();
         Ok(model)
     }
 
@@ -180,6 +185,27 @@ impl Model {
                 &self.positions,
                 &self.rest.mass,
             )
+        } else {
+            Vec::new()
+        };
+    }
+
+    /// Finds how thick wisps are, where they push each other.
+    fn thicken(&mut self) {
+        let contact = &self.settings.contact;
+        self.radii = if self.settings.has_contact() {
+            let rest = AtRest {
+                strand_count: self.strand_count,
+                points_per_strand: self.points_per_strand,
+                positions: &self.positions,
+                lengths: &self.rest.stretch,
+            };
+            rest.radii(|strand, share| {
+                let traits = self.hairs.traits(strand);
+                let hairs = contact.hairs.unwrap_or(traits.hairs);
+                let thinner = self.hairs.section(strand).along.radius(f64::from(share)) as f32;
+                0.5 * traits.diameter * thinner * (hairs / contact.packing).sqrt()
+            })
         } else {
             Vec::new()
         };
@@ -254,6 +280,7 @@ impl Model {
         }
         if change.stages || change.masses || change.buffers {
             self.pack();
+            self.thicken();
         }
         Ok(())
     }

@@ -36,6 +36,17 @@ impl RodReport {
     }
 }
 
+/// Report of the contacts of strands with each other after a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactReport {
+    /// Pairs of segments that press.
+    pub pairs: usize,
+    /// Depth \[m\] of the deepest: by how much the axes are nearer than the wisps are thick.
+    pub deepest: f32,
+    /// Pairs whose axes have crossed and that are being pushed back.
+    pub crossed: usize,
+}
+
 /// Strands of rods that were made stiffer than their material, since their shape would not be stable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stiffening {
@@ -69,6 +80,8 @@ pub struct StepReport {
     pub pressure: PressureReport,
     /// The solve of rods; none with another strand solver.
     pub rods: Option<RodReport>,
+    /// Contacts of strands with each other; none where they pass through each other.
+    pub contacts: Option<ContactReport>,
     /// Mean of length / rest length - 1 over all segments.
     pub stretch_mean: f32,
     /// Largest length / rest length - 1 of any segment; not a number where one of them is none.

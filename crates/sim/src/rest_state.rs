@@ -36,6 +36,8 @@ impl Model {
             length_scale: vec![Lanes([1.0; LANES]); blocks],
             lengths: Arc::clone(&self.rest),
             contacts: Contacts::new(&self.colliders, blocks, self.points_per_strand),
+            tensions: Vec::new(),
+            pairs: Vec::new(),
             volume_box: None,
             grab: Grab::default(),
             positions,

@@ -6,6 +6,7 @@ use crate::SimError;
 use crate::cells::Lattice;
 use crate::strands::constrain::settings::{Angles, ConstrainSettings, LengthPass, Springs};
 use crate::strands::rods::settings::{GroupSettings, Rest, RodSettings};
+use crate::wisps::settings::ContactSettings;
 
 settings! {
     /// Motion of hair.
@@ -33,6 +34,8 @@ settings! {
         /// not give is that of `[simulation.strands.rods]`, or of its own `hair`. A shear modulus that is not given keeps
         /// its share of Young's modulus, or follows from Poisson's ratio where that is given.
         groups: Vec<GroupSettings> = Vec::new(), in [0.0, 1024.0], invalidates masses;
+        /// Strands that push each other apart.
+        contact: ContactSettings = ContactSettings::default();
         /// The fluid volume.
         volume: VolumeSettings = VolumeSettings::default();
         plain {
@@ -78,6 +81,11 @@ impl Settings {
     /// True where hair and solids hold back the air.
     pub(crate) fn has_shelter(&self) -> bool {
         self.has_rods() && self.drag.factor > 0.0 && self.drag.shelter
+    }
+
+    /// True where strands push each other apart.
+    pub(crate) fn has_contact(&self) -> bool {
+        self.has_rods() && self.contact.enabled
     }
 
     /// Strands of springs and rounds of constraints in place of rods [Chen2011 §4], with bends toward the groom's
@@ -279,6 +287,11 @@ impl Settings {
             let found = "mic0, which is a chain from cell to cell".to_owned();
             let expected = "auto, chebyshev, jacobi or none on a GPU";
             return refuse("simulation.volume.preconditioner", found, expected);
+        }
+        if self.contact.enabled {
+            let expected =
+                "false on a GPU, or `devices.simulation = \"cpu\"`: strands push each other on the CPU alone";
+            return refuse("simulation.contact.enabled", "true".to_owned(), expected);
         }
         if self.volume.max_iterations > MOST_ITERATIONS {
             let found = self.volume.max_iterations.to_string();

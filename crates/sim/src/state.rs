@@ -8,6 +8,7 @@ use strandline_groom::{LANES, Lanes, RestShape, Vec3Lanes};
 use crate::contact::planes::Contacts;
 use crate::grab::Grab;
 use crate::length_scale::Lengths;
+use crate::wisps::pair::Pair;
 use crate::{Currents, Model, SimError};
 use strandline_base::vec3x8::{Vec3x8, splat};
 
@@ -78,6 +79,11 @@ pub struct State {
     pub(crate) grab: Grab,
     /// Contact planes remembered from step to step.
     pub(crate) contacts: Contacts,
+    /// Tension of each segment of rods that push each other \[N\], shape `[block][point]` of lanes; empty before their
+    /// first step and without them.
+    pub(crate) tensions: Vec<Lanes>,
+    /// Pairs of strands that touch or nearly do, by their segments.
+    pub(crate) pairs: Vec<Pair>,
     /// Box of the volume: lower corner with the ring \[m\] and spacing \[m\]; `None` before its first step,
     /// or while it is off.
     pub(crate) volume_box: Option<[f32; 4]>,

@@ -41,6 +41,8 @@ impl State {
             self.contacts = Contacts::new(&model.colliders, blocks, points);
         }
         self.volume_box = None;
+        // Pairs of strands know their sides in the world.
+        self.pairs.clear();
         self.body = body;
     }
 }

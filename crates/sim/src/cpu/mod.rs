@@ -23,8 +23,12 @@ pub mod volume;
 
 pub(crate) mod length_pass;
 mod rod_air;
+mod rod_crowd;
+mod rod_pairs;
+mod rod_parts;
 mod rod_pulls;
 mod rod_rest;
+mod rod_room;
 pub(crate) mod spans;
 pub(crate) mod wind_box;
 

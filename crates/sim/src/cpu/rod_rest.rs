@@ -2,7 +2,8 @@
 
 use wide::f32x8;
 
-use super::solve_rods::{Parts, Strands};
+use super::rod_parts::Parts;
+use super::solve_rods::Strands;
 use crate::strands::rods::real::Real;
 use crate::strands::rods::workspace::Workspace;
 

@@ -83,6 +83,10 @@ impl CpuRunner {
         let scratch = self.scratch.get_or_insert_with(|| Scratch::new(model, state));
         scratch.refresh(model, state);
         model.give_sections(state);
+        if !model.settings.has_contact() {
+            state.pairs.clear();
+            state.tensions.clear();
+        }
         let (start, end) = (state.body.clone(), drive.body.clone());
         let time_step = model.settings.time_step;
         let obstacles = Obstacles::after(&self.skins, &model.colliders, start, end, time_step);
@@ -134,6 +138,7 @@ impl Step<'_> {
             Stage::SolveRods => {
                 let (non_finite, rods) = solve_rods(model, state, scratch, obstacles, wind);
                 self.report.rods = Some(rods);
+                self.report.contacts = model.settings.has_contact().then_some(scratch.crowd.report);
                 self.count(non_finite);
             }
             Stage::Splat => {

@@ -7,6 +7,7 @@ use wide::f32x8;
 
 use super::Volume;
 use super::cells::Cells;
+use super::rod_crowd::Crowd;
 use super::shelter::Shelter;
 use crate::cells::Grid;
 use crate::masses::Masses;
@@ -29,6 +30,8 @@ pub struct Scratch {
     pub(crate) cells: Option<Cells>,
     /// Air at the points; `None` where all of it is the wind.
     pub(crate) shelter: Option<Shelter>,
+    /// Strands that push each other; empty where they do not.
+    pub(crate) crowd: Crowd,
     /// Inputs of masses and nodes.
     made_from: Made,
 }
@@ -70,6 +73,7 @@ impl Scratch {
             volume: None,
             cells: None,
             shelter: None,
+            crowd: Crowd::default(),
             made_from: Made::new(model, state),
         }
     }
@@ -84,6 +88,9 @@ impl Scratch {
         }
         self.predicted.resize(state.positions.len(), Vec3Lanes::default());
         self.refresh_volume(model, state.volume_box);
+        if !model.settings.has_contact() {
+            self.crowd = Crowd::default();
+        }
         self.shelter = model.settings.has_shelter().then(|| self.shelter.take().unwrap_or_default());
         let old = self.cells.take();
         self.cells = model

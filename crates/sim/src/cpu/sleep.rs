@@ -84,6 +84,8 @@ fn is_same(one: &State, other: &State) -> bool {
 fn have_same_bits(one: &State, other: &State) -> bool {
     one.body == other.body
         && one.volume_box == other.volume_box
+        && are_same(&one.tensions, &other.tensions)
+        && are_same(&one.pairs, &other.pairs)
         && are_same(&one.length_scale, &other.length_scale)
         && are_same(&one.positions, &other.positions)
         && are_same(&one.previous_positions, &other.previous_positions)

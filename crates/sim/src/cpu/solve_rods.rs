@@ -2,24 +2,23 @@
 
 use glam::Vec3;
 use strandline_base::par::prelude::*;
-use strandline_body::{BodyFrame, Pose};
-use strandline_groom::{LANES, Lanes, Vec3Lanes};
+use strandline_groom::{LANES, Lanes, RestShape, Vec3Lanes};
 use wide::f32x8;
 
 use super::Scratch;
 use super::advance::{Block, NonFinite, recover};
-use super::integrate::Fall;
 use super::length_pass::Follow;
-use super::rod_air::{Air, Around, of_lanes, shares};
+use super::rod_air::{Around, of_lanes, shares};
+use super::rod_crowd::solve_crowd;
+use super::rod_parts::{Parts, Ride};
 use crate::contact::Obstacles;
-use crate::contact::contacts::Solids;
 use crate::contact::planes::Plane;
 use crate::grab::Pinned;
-use crate::strands::rods::hairs::Traits;
+use crate::masses::Masses;
+use crate::strands::rods::model::Rods;
 use crate::strands::rods::real::{Real, Vector};
 use crate::strands::rods::rod::{Node, Solved, StepSettings};
-use crate::strands::rods::settings::RodSettings;
-use crate::strands::rods::workspace::{Carry, Workspace};
+use crate::strands::rods::workspace::Workspace;
 use crate::{MOST_SPIN, Model, RodReport, State};
 
 /// Rounds of the projection onto lengths.
@@ -39,11 +38,16 @@ pub fn solve_rods(
     wind: Vec3,
 ) -> (NonFinite, RodReport) {
     let Some(rods) = &model.rods else { return Default::default() };
+    if model.settings.has_contact() {
+        return solve_crowd(model, state, scratch, obstacles, wind);
+    }
     let points = model.points_per_strand;
     let parts = Parts::new(model, obstacles, wind);
     let flow = scratch.shelter.as_ref().map_or(&[][..], |shelter| &shelter.air[..]);
     let nodes = scratch.nodes.as_ref().unwrap_or(&rods.nodes);
-    let (lengths, masses, grab) = (&state.lengths.stretch, &scratch.masses, &state.grab);
+    let hair =
+        Hair { model, rods, parts: &parts, nodes, lengths: &state.lengths, masses: &scratch.masses, flow };
+    let (grab, time_step) = (&state.grab, model.settings.time_step);
     scratch
         .predicted
         .par_chunks_mut(points)
@@ -58,31 +62,14 @@ pub fn solve_rods(
         .map_init(
             || Workspace::new(points),
             |work, (block, ((((((predicted, velocities), start), planes), sections), spins), corrections))| {
-                let range = block * points..(block + 1) * points;
                 work.load(start, velocities, sections, spins);
-                work.load_remainders(corrections, model.settings.time_step);
-                let strands = Strands {
-                    model,
-                    parts: &parts,
-                    nodes: &nodes[range.clone()],
-                    lengths: &lengths[range.clone()],
-                    inverse_mass: &masses.inverse_mass[range.clone()],
-                    rest: &model.positions[range.clone()],
-                    clearance: &model.rest_clearance[range.clone()],
-                    rest_sections: &rods.sections[range.clone()],
-                    flow: flow.get(range).unwrap_or_default(),
-                    viscous: parts.viscous(&rods.traits[block * LANES..]),
-                    crowding: of_lanes(&rods.traits[block * LANES..], |traits| traits.crowding),
-                    air: parts.air.of(&rods.traits[block * LANES..]),
-                    driven: parts.driven(model, block),
-                    block,
-                    live: model.live_lanes(block),
-                };
+                work.load_remainders(corrections, time_step);
+                let strands = hair.strands(block);
                 let pinned: Vec<Pinned> =
                     grab.pinned(block, predicted, strands.lengths, strands.inverse_mass).collect();
                 strands.solve(work, planes, &pinned);
                 work.store(predicted, velocities, sections, spins);
-                work.store_remainders(corrections, model.settings.time_step);
+                work.store_remainders(corrections, time_step);
                 let hair = Block { positions: predicted, previous: start, velocities, corrections };
                 (recover(model, &obstacles.end, block, hair), work.report)
             },
@@ -90,82 +77,41 @@ pub fn solve_rods(
         .reduce(Default::default, |one, other| (one.0.with(other.0), one.1.with(other.1)))
 }
 
-/// Inputs of a step that all strands share.
-pub(super) struct Parts<'a> {
-    pub(super) settings: &'a RodSettings,
-    pub(super) count: u32,
-    pub(super) time_step: f64,
-    fall: Fall,
-    air: Air,
-    pub(super) solids: Solids<'a>,
-    /// Body at the start and at the end of the step.
-    body: [&'a BodyFrame; 2],
-    /// Rides of the head, one for each part.
-    head: Vec<Ride>,
+/// All strands in a step.
+pub(super) struct Hair<'a> {
+    pub(super) model: &'a Model,
+    pub(super) rods: &'a Rods,
+    pub(super) parts: &'a Parts<'a>,
+    pub(super) nodes: &'a [Node<f32x8>],
+    pub(super) lengths: &'a RestShape,
+    pub(super) masses: &'a Masses,
+    /// Velocity of the air at each point \[m/s\]; empty where it is the wind.
+    pub(super) flow: &'a [Vec3Lanes],
 }
 
-/// The motion of a root frame through a part of a step.
-struct Ride {
-    /// At the end of the part.
-    world_from_root: Carry,
-    /// From its start to its end; `None` where nothing moves.
-    moved: Option<Carry>,
-}
-
-impl<'a> Parts<'a> {
-    fn new(model: &'a Model, obstacles: &'a Obstacles<'a>, wind: Vec3) -> Self {
-        let settings = &model.settings.strands.rods;
-        let count = settings.substeps;
-        let time_step = model.settings.time_step / count as f32;
-        let body = [&obstacles.start, &obstacles.end];
-        let head = body.map(BodyFrame::world_from_head);
-        let ride = |part| {
-            let (world_from_root, moved) = head[0].part_of_way(&head[1], part, count);
-            let moved = (moved != Pose::IDENTITY).then(|| Carry::new(&moved));
-            Ride { world_from_root: Carry::new(&world_from_root), moved }
-        };
-        Self {
-            settings,
-            count,
-            time_step: f64::from(time_step),
-            fall: Fall::of_rods(model, time_step, wind),
-            air: Air::new(model, time_step, wind),
-            solids: Solids::in_parts(obstacles, model.points_per_strand, count),
-            body,
-            head: (0..count).map(ride).collect(),
+impl<'a> Hair<'a> {
+    /// A block of them.
+    pub(super) fn strands(&self, block: usize) -> Strands<'a> {
+        let (model, parts) = (self.model, self.parts);
+        let range = block * model.points_per_strand..(block + 1) * model.points_per_strand;
+        let traits = &self.rods.traits[block * LANES..];
+        Strands {
+            model,
+            parts,
+            nodes: &self.nodes[range.clone()],
+            lengths: &self.lengths.stretch[range.clone()],
+            inverse_mass: &self.masses.inverse_mass[range.clone()],
+            rest: &model.positions[range.clone()],
+            clearance: &model.rest_clearance[range.clone()],
+            rest_sections: &self.rods.sections[range.clone()],
+            flow: self.flow.get(range).unwrap_or_default(),
+            viscous: parts.viscous(traits),
+            crowding: of_lanes(traits, |traits| traits.crowding),
+            air: parts.air.of(traits),
+            driven: parts.driven(model, block),
+            block,
+            live: model.live_lanes(block),
         }
-    }
-
-    /// True where root frames are the strands' own.
-    fn has_roots(&self) -> bool {
-        self.body.iter().any(|body| body.roots().is_some())
-    }
-
-    /// The ride of a block of strands with root frames of their own.
-    fn ride(&self, model: &Model, block: usize, part: u32) -> Ride {
-        let [starts, ends] = self.body.map(|body| model.roots(body, block));
-        let through: [(Pose, Pose); LANES] =
-            std::array::from_fn(|lane| starts[lane].part_of_way(&ends[lane], part, self.count));
-        let moved = through.map(|(_, moved)| moved);
-        let moves = moved.iter().any(|moved| *moved != Pose::IDENTITY);
-        Ride {
-            world_from_root: Carry::of_lanes(&through.map(|(after, _)| after)),
-            moved: moves.then(|| Carry::of_lanes(&moved)),
-        }
-    }
-
-    /// Mask of the strands of a block whose root frames move: they do not rest.
-    fn driven(&self, model: &Model, block: usize) -> f32x8 {
-        let [starts, ends] = self.body.map(|body| model.roots(body, block));
-        let moves: [f32; LANES] =
-            std::array::from_fn(|lane| if starts[lane] == ends[lane] { 0.0 } else { 1.0 });
-        f32x8::from(moves).simd_gt(f32x8::ZERO)
-    }
-
-    /// Relaxation times of a block's strands over the length of a part.
-    fn viscous(&self, strands: &[Traits]) -> f32x8 {
-        let of = |lane: usize| (f64::from(strands[lane].damping) / self.time_step) as f32;
-        f32x8::from(std::array::from_fn::<f32, LANES, _>(of))
     }
 }
 
@@ -174,8 +120,8 @@ pub(super) struct Strands<'a> {
     pub(super) model: &'a Model,
     pub(super) parts: &'a Parts<'a>,
     pub(super) nodes: &'a [Node<f32x8>],
-    lengths: &'a [Lanes],
-    inverse_mass: &'a [Lanes],
+    pub(super) lengths: &'a [Lanes],
+    pub(super) inverse_mass: &'a [Lanes],
     rest: &'a [Vec3Lanes],
     pub(super) clearance: &'a [Lanes],
     rest_sections: &'a [Vec3Lanes],
@@ -195,18 +141,45 @@ pub(super) struct Strands<'a> {
 
 impl Strands<'_> {
     fn solve(&self, space: &mut Workspace, planes: &mut [Plane], pinned: &[Pinned]) {
+        self.begin(space);
+        for part in 0..self.parts.count {
+            let settings = self.begin_part(space, planes, pinned, part);
+            let solved = space.solve(self.nodes, &settings);
+            self.end_part(space, planes, &solved);
+        }
+    }
+
+    /// Numbers of the strands in the scratch.
+    pub(super) fn begin(&self, space: &mut Workspace) {
         for point in 0..self.nodes.len() {
             space.inverse_mass[point] = f32x8::new(self.inverse_mass[point].0);
             space.length[point] = f32x8::new(self.lengths[point].0);
         }
         shares(&space.length, &mut space.share);
         (space.bad, space.report) = (f32x8::ZERO, RodReport::default());
-        for part in 0..self.parts.count {
-            let own = self.parts.has_roots().then(|| self.parts.ride(self.model, self.block, part));
-            self.want(space, own.as_ref().unwrap_or(&self.parts.head[part as usize]));
-            self.find_pulls(space, planes, pinned, part);
-            self.guess(space);
-            self.solve_part(space, planes);
+    }
+
+    /// Where forces, head and hand would take the strands in a part, and the shape where Newton's method begins.
+    pub(super) fn begin_part(
+        &self,
+        space: &mut Workspace,
+        planes: &mut [Plane],
+        pinned: &[Pinned],
+        part: u32,
+    ) -> StepSettings<f32x8> {
+        let own = self.parts.has_roots().then(|| self.parts.ride(self.model, self.block, part));
+        self.want(space, own.as_ref().unwrap_or(&self.parts.head[part as usize]));
+        self.find_pulls(space, planes, pinned, part);
+        self.guess(space);
+        let Workspace { carried, remainders, sections, work, .. } = space;
+        let edge =
+            |index: usize| carried[index + 1] - carried[index] + (remainders[index + 1] - remainders[index]);
+        work.begin(edge, |index| sections[index]);
+        StepSettings {
+            time_step: self.parts.time_step,
+            newton_steps: self.parts.settings.newton_steps,
+            tolerance: f64::from(self.parts.settings.tolerance),
+            viscous: self.viscous,
         }
     }
 
@@ -288,18 +261,8 @@ impl Strands<'_> {
         pushed * (f32x8::of(1.0) / mass)
     }
 
-    fn solve_part(&self, space: &mut Workspace, planes: &mut [Plane]) {
-        let Workspace { carried, remainders, sections, work, .. } = space;
-        let edge =
-            |index: usize| carried[index + 1] - carried[index] + (remainders[index + 1] - remainders[index]);
-        work.begin(edge, |index| sections[index]);
-        let settings = StepSettings {
-            time_step: self.parts.time_step,
-            newton_steps: self.parts.settings.newton_steps,
-            tolerance: f64::from(self.parts.settings.tolerance),
-            viscous: self.viscous,
-        };
-        let solved = space.solve(self.nodes, &settings);
+    /// Exact lengths outside the solids, and the new state.
+    pub(super) fn end_part(&self, space: &mut Workspace, planes: &mut [Plane], solved: &Solved<f32x8>) {
         for (point, moved) in space.moved.iter_mut().enumerate() {
             let [x, y, z, _] = space.work.moved[point];
             *moved = space.remainders[point] + Vector::new(x, y, z);
@@ -307,7 +270,7 @@ impl Strands<'_> {
         let Workspace { carried, moved, inverse_mass, length, .. } = space;
         space.project.project(carried, moved, inverse_mass, length, LENGTH_ROUNDS);
         self.place(space, planes);
-        self.take(space, &solved);
+        self.take(space, solved);
     }
 
     /// Lengths to the last bit, from root to tip, outside the solids.

@@ -362,6 +362,7 @@ fn step_report((report, seconds): Reported, model: &Model, segment_count: usize)
     StepReport {
         seconds,
         pressure: report.pressure.into(),
+        contacts: None,
         rods: model.rods.is_some().then_some(RodReport {
             residual: report.residual,
             unsolved: report.unsolved as usize,

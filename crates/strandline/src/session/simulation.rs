@@ -28,10 +28,11 @@ fn move_lanes(points: &mut [Vec3Lanes], by: Vec3) {
     }
 }
 
-/// Settings whose guides stand for a number of hairs in the air unless they tell another.
+/// Settings whose guides stand for a number of hairs in the air and in contacts unless they tell another.
 pub(super) fn with_hairs(settings: &Settings, hairs: Option<f32>) -> Settings {
     let mut settings = settings.clone();
     settings.drag.hairs = settings.drag.hairs.or(hairs);
+    settings.contact.hairs = settings.contact.hairs.or(hairs);
     settings
 }
 

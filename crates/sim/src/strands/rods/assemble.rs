@@ -4,6 +4,7 @@ use super::front::{Bends, Front, ROWS, Spring, UNKNOWNS};
 use super::joint::{Joint, Slope};
 use super::real::{Real, Vector};
 use super::rod::{Node, Pull, Work};
+use super::rounds::Push;
 
 /// Distance \[m\] from a solid's plane within which a point touches it.
 const ROUNDING: f64 = 1e-6;
@@ -16,7 +17,7 @@ impl<R: Real> Work<R> {
     pub(super) fn factorise(
         &mut self,
         rod: &[Node<R>],
-        pulls: &[Pull<R>],
+        (pulls, pushes): (&[Pull<R>], &[Push<R>]),
         stiffer: R,
         time_step: f64,
         first: bool,
@@ -34,6 +35,9 @@ impl<R: Real> Work<R> {
             while let Some(pull) = pulls.next_if(|pull| pull.node == index) {
                 let force = self.add_pull(&mut front, pull, node.mass * per_square, first);
                 pressed = pressed.or_more(force);
+            }
+            if let Some(push) = pushes.get(index) {
+                add_push(&mut front, push);
             }
             if index + 1 < last {
                 self.add_joint(&mut front, index + 1, &rod[index + 1], stiffer, turns);
@@ -119,7 +123,7 @@ impl<R: Real> Work<R> {
     fn tension(&self, index: usize, node: &Node<R>) -> (Vector<R>, [[R; 3]; 3]) {
         let segment = &self.segments[index];
         let stiffness = node.stretch / node.length;
-        let tension = stiffness * (segment.length - node.length);
+        let tension = stiffness * (segment.length - node.length) + self.tensions[index];
         let across = (tension / segment.length).or_more(R::of(0.0));
         let tangent = segment.tangent;
         let [x, y, z] = (tangent * (stiffness - across)).array();
@@ -164,6 +168,17 @@ impl<R: Real> Work<R> {
         let turnings = joint.turnings(lower, upper, [springs[0].moment * turns, springs[1].moment * turns]);
         let (pull, stretch) = self.tension(index, node);
         front.set_joint(&Bends { springs, turnings, stretch, pull });
+    }
+}
+
+/// Other strands push a node and hold it, and with it the next one.
+#[inline(always)]
+fn add_push<R: Real>(front: &mut Front<R>, push: &Push<R>) {
+    let force = push.force.array();
+    for row in 0..3 {
+        front.add_right(row, force[row]);
+        front.add(row, row, push.own);
+        front.add(row + UNKNOWNS, row, push.next);
     }
 }
 

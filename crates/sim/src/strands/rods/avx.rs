@@ -14,11 +14,14 @@ use wide::f32x8;
 use super::joint::Segment;
 use super::real::{Real, Vector};
 use super::rod::{Node, Pull, Solved, StepSettings, Work};
+use super::rounds::Push;
+
+mod rounds;
 
 /// Eight numbers in a register.
 ///
 /// # Safety of its operations
-/// A processor without AVX does not have these instructions. The type is private to this file, and every value of it
+/// A processor without AVX does not have these instructions. The type is private to this module, and every value of it
 /// belongs to an [`Avx`], which is made only after the processor was asked: no operation runs elsewhere.
 #[derive(Clone, Copy)]
 struct Eight(__m256);
@@ -134,10 +137,13 @@ fn given(vector: Vector<Eight>) -> Vector<f32x8> {
 }
 
 /// Scratch of eight strands on such a processor.
+#[derive(Clone)]
 pub(crate) struct Avx {
     work: Work<Eight>,
     rod: Vec<Node<Eight>>,
     pulls: Vec<Pull<Eight>>,
+    pushes: Vec<Push<Eight>>,
+    forces: Vec<Vector<Eight>>,
 }
 
 impl Avx {
@@ -147,6 +153,8 @@ impl Avx {
             work: Work::new(points),
             rod: Vec::with_capacity(points),
             pulls: Vec::with_capacity(4 * points),
+            pushes: Vec::new(),
+            forces: Vec::new(),
         })
     }
 

@@ -73,7 +73,7 @@ fn sum<R: Real>(springs: &[Spring<R>; 3], term: impl Fn(&Spring<R>) -> R) -> R {
 /// Result of the elimination of a node, for the back substitution.
 #[derive(Clone, Copy, Debug)]
 pub struct Factors<R> {
-    /// Entries below the diagonal of each column, by row.
+    /// Entries below the diagonal of each column, by row; on it 1 over the pivot, 0 of what stays.
     below: [[R; ROWS]; UNKNOWNS],
     solved: [R; UNKNOWNS],
 }
@@ -83,6 +83,24 @@ impl<R: Real> Factors<R> {
     #[inline(always)]
     pub fn zero() -> Self {
         Self { below: [[R::of(0.0); ROWS]; UNKNOWNS], solved: [R::of(0.0); UNKNOWNS] }
+    }
+
+    /// Eliminates another right-hand side, whose rows below change.
+    #[inline(always)]
+    pub(super) fn solve(&mut self, right: &mut [R; ROWS]) {
+        self.solve_column::<0>(right);
+        self.solve_column::<1>(right);
+        self.solve_column::<2>(right);
+        self.solve_column::<3>(right);
+    }
+
+    #[inline(always)]
+    fn solve_column<const COLUMN: usize>(&mut self, right: &mut [R; ROWS]) {
+        let own = right[COLUMN];
+        self.solved[COLUMN] = own * self.below[COLUMN][COLUMN];
+        for row in COLUMN + 1..ROWS {
+            right[row] -= self.below[COLUMN][row] * own;
+        }
     }
 }
 
@@ -234,6 +252,7 @@ impl<R: Real> Front<R> {
         let inverse = free / pivot;
         let right = self.right[COLUMN];
         factors.solved[COLUMN] = right * inverse;
+        factors.below[COLUMN][COLUMN] = inverse;
         for row in COLUMN + 1..ROWS {
             let value = self.entries[entry(row, COLUMN)];
             let scaled = value * inverse;

@@ -7,6 +7,7 @@ use super::real::{Real, Vector};
 const RIGHT: f64 = 3e-5;
 
 /// Scratch of the projection.
+#[derive(Clone)]
 pub struct Lengths<R> {
     tangents: Vec<Vector<R>>,
     upper: Vec<R>,

@@ -56,7 +56,8 @@ impl Along {
     /// The same everywhere.
     pub const EVEN: Self = Self { tip: 1.0, start: 0.5, stiffness: [1.0; 3] };
 
-    fn radius(&self, share: f64) -> f64 {
+    /// Radius at a share of the length over that at the root.
+    pub fn radius(&self, share: f64) -> f64 {
         let tapered = ((share - self.start) / (1.0 - self.start)).clamp(0.0, 1.0);
         1.0 + (self.tip - 1.0) * tapered
     }

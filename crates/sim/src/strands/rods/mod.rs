@@ -23,6 +23,7 @@ pub(crate) mod other_lengths;
 pub mod presets;
 pub mod rest;
 pub mod rod;
+pub mod rounds;
 pub mod settings;
 mod stability;
 pub(crate) mod workspace;

@@ -2,9 +2,12 @@
 
 use wide::f32x8;
 
+use super::real::Vector;
 use super::rod::{Node, Pull, Solved, StepSettings, Work};
+use super::rounds::{Push, Turned};
 
 /// There is none.
+#[derive(Clone)]
 pub(crate) enum Avx {}
 
 impl Avx {
@@ -21,6 +24,49 @@ impl Avx {
         _pulls: &[Pull<f32x8>],
         _settings: &StepSettings<f32x8>,
     ) -> Solved<f32x8> {
+        match *self {}
+    }
+
+    /// Not called.
+    pub(crate) fn prepare(
+        &mut self,
+        _work: &mut Work<f32x8>,
+        _rod: &[Node<f32x8>],
+        _pulls: &[Pull<f32x8>],
+        _viscous: f32x8,
+    ) {
+        match *self {}
+    }
+
+    /// Not called.
+    pub(crate) fn set_tension(&mut self, _segment: usize, _tension: f32x8) {
+        match *self {}
+    }
+
+    /// Not called.
+    pub(crate) fn tension(&self, _segment: usize) -> f32x8 {
+        match *self {}
+    }
+
+    /// Not called.
+    pub(crate) fn push(
+        &mut self,
+        _work: &mut Work<f32x8>,
+        _pushes: &[Push<f32x8>],
+        _settings: &StepSettings<f32x8>,
+        _first: bool,
+        _open: f32x8,
+    ) -> Turned<f32x8> {
+        match *self {}
+    }
+
+    /// Not called.
+    pub(crate) fn answer(&mut self, _work: &mut Work<f32x8>, _forces: &[Vector<f32x8>]) {
+        match *self {}
+    }
+
+    /// Not called.
+    pub(crate) fn settle(&mut self, _work: &mut Work<f32x8>, _open: f32x8) {
         match *self {}
     }
 }

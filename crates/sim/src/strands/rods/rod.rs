@@ -114,7 +114,12 @@ pub struct Work<R> {
     pub(super) air: Vec<[R; 4]>,
     pub(super) rest: Vec<[R; 3]>,
     pub(super) factors: Vec<Factors<R>>,
-    pub(super) step: Vec<[R; UNKNOWNS]>,
+    /// Tension of each segment \[N\] beside that of its strain, and its tangent in the last system.
+    pub(crate) tensions: Vec<R>,
+    pub(super) tangents: Vec<Vector<R>>,
+    /// 1 for strands whose last step turned no segment far, else 0.
+    pub(super) calm: R,
+    pub(crate) step: Vec<[R; UNKNOWNS]>,
 }
 
 impl<R: Real> Work<R> {
@@ -131,6 +136,10 @@ impl<R: Real> Work<R> {
             air: vec![[R::of(0.0); 4]; points],
             rest: vec![[R::of(0.0); 3]; points],
             factors: vec![Factors::zero(); points],
+            // A sum with -0 keeps its bits.
+            tensions: vec![R::of(-0.0); points],
+            tangents: vec![zero; points],
+            calm: R::of(0.0),
             step: unknowns,
         }
     }
@@ -182,24 +191,17 @@ impl<R: Real> Work<R> {
     /// of the strand by Newton's method. A solved strand keeps its numbers while the others of its block go on.
     #[inline(always)]
     pub fn solve(&mut self, rod: &[Node<R>], pulls: &[Pull<R>], settings: &StepSettings<R>) -> Solved<R> {
-        let viscous = settings.viscous;
-        let share = R::of(1.0) / (R::of(1.0) + viscous);
-        for (index, node) in rod.iter().enumerate().take(rod.len() - 1).skip(1) {
-            let strains = Joint::new(&self.segments[index - 1], &self.segments[index]).strains;
-            for (axis, strain) in strains.into_iter().enumerate() {
-                self.rest[index][axis] = (node.rest[axis] + viscous * strain) * share;
-            }
-        }
-        let stiffer = R::of(1.0) + viscous;
+        self.prepare(rod, settings.viscous);
+        let stiffer = R::of(1.0) + settings.viscous;
         let mut unsolved = R::of(1.0);
-        self.take_guess(rod);
         let (mut residual, mut touched) = (R::of(0.0), R::of(0.0));
         let mut steps = 0;
         while steps < settings.newton_steps && unsolved.any_positive() {
             let (pressed, mut sound) =
-                self.factorise(rod, pulls, stiffer, settings.time_step, steps == 0, R::of(1.0));
+                self.factorise(rod, (pulls, &[]), stiffer, settings.time_step, steps == 0, R::of(1.0));
             if unsolved.choose(R::of(1.0) - sound, R::of(0.0)).any_positive() {
-                (_, sound) = self.factorise(rod, pulls, stiffer, settings.time_step, steps == 0, sound);
+                (_, sound) =
+                    self.factorise(rod, (pulls, &[]), stiffer, settings.time_step, steps == 0, sound);
             }
             touched = unsolved.choose(pressed, touched);
             substitute(&self.factors, &mut self.step);
@@ -216,6 +218,19 @@ impl<R: Real> Work<R> {
         }
         self.step.fill([R::of(0.0); UNKNOWNS]);
         Solved { steps, unsolved, residual, pressed: touched }
+    }
+
+    /// Strains without moments of a step, whose relaxation time over its length is given, and the first guess.
+    #[inline(always)]
+    pub fn prepare(&mut self, rod: &[Node<R>], viscous: R) {
+        let share = R::of(1.0) / (R::of(1.0) + viscous);
+        for (index, node) in rod.iter().enumerate().take(rod.len() - 1).skip(1) {
+            let strains = Joint::new(&self.segments[index - 1], &self.segments[index]).strains;
+            for (axis, strain) in strains.into_iter().enumerate() {
+                self.rest[index][axis] = (node.rest[axis] + viscous * strain) * share;
+            }
+        }
+        self.take_guess(rod);
     }
 
     /// Turns the segments to the guess and keeps their lengths, so that their tensions stay those of the shape carried by
@@ -245,7 +260,7 @@ impl<R: Real> Work<R> {
 
     /// Largest turn of a segment in the step \[rad\].
     #[inline(always)]
-    fn turn(&self) -> R {
+    pub(super) fn turn(&self) -> R {
         let mut largest = R::of(0.0);
         for index in 0..self.moved.len() - 1 {
             let [x, y, z, _] = self.step[index];
@@ -261,6 +276,12 @@ impl<R: Real> Work<R> {
     /// Returns the largest turn of a segment \[rad\].
     #[inline(always)]
     fn take_step(&mut self, unsolved: R, sound: R) -> R {
+        self.take_whole_step(unsolved, sound).0
+    }
+
+    /// The same; also returns 1 for strands whose whole step was taken, else 0.
+    #[inline(always)]
+    pub(super) fn take_whole_step(&mut self, unsolved: R, sound: R) -> (R, R) {
         let last = self.moved.len() - 1;
         // 0 for finite numbers, else not a number.
         let nothing = self.step.iter().flatten().fold(R::of(0.0), |sum, number| sum + *number * R::of(0.0));
@@ -283,7 +304,7 @@ impl<R: Real> Work<R> {
             let segment = self.segments[index].moved(self.edges[index], angle);
             self.segments[index] = Segment::choose(moves, segment, self.segments[index]);
         }
-        largest
+        (largest, (share - R::of(WHOLE)).choose(moves, R::of(0.0)))
     }
 }
 
@@ -303,6 +324,9 @@ pub struct Solved<R> {
 /// Largest relative motion of the ends of a segment in a Newton step, over its length, and largest turn of a section
 /// \[rad\]: the linearised bends do not hold beyond.
 const LONGEST_TURN: f64 = 1.0;
+
+/// Share of a Newton step that counts as all of it.
+const WHOLE: f64 = 0.999_999;
 
 /// Largest turn of a segment in the first guess \[rad\]: faster strands begin at the shape carried by the head.
 const FARTHEST_GUESS: f64 = 0.5;

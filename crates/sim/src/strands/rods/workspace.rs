@@ -10,6 +10,7 @@ use super::avx::Avx;
 use super::lengths::Lengths;
 use super::real::{Real, Vector};
 use super::rod::{Node, Pull, Solved, StepSettings, Work};
+use super::rounds::{Push, Turned};
 use crate::RodReport;
 
 /// A rigid motion in each lane.
@@ -42,6 +43,7 @@ impl Carry {
 }
 
 /// Scratch of a thread.
+#[derive(Clone)]
 pub(crate) struct Workspace {
     pub points: Vec<Vector<f32x8>>,
     pub velocities: Vec<Vector<f32x8>>,
@@ -102,6 +104,65 @@ impl Workspace {
         match &mut self.avx {
             Some(avx) => avx.solve(&mut self.work, rod, &self.pulls, settings),
             None => self.work.solve(rod, &self.pulls, settings),
+        }
+    }
+
+    /// Sets the tensions \[N\] with which a step among other strands begins; none where there are none.
+    pub fn set_tensions(&mut self, tensions: &[Lanes]) {
+        for point in 0..self.points.len() {
+            let tension = tensions.get(point).map_or(f32x8::of(-0.0), |lanes| f32x8::new(lanes.0));
+            match &mut self.avx {
+                Some(avx) => avx.set_tension(point, tension),
+                None => self.work.tensions[point] = tension,
+            }
+        }
+    }
+
+    /// Writes them.
+    pub fn store_tensions(&self, tensions: &mut [Lanes]) {
+        for (point, lanes) in tensions.iter_mut().enumerate() {
+            let tension = self.avx.as_ref().map_or(self.work.tensions[point], |avx| avx.tension(point));
+            let finite = tension.to_array().map(|tension| if tension.is_finite() { tension } else { 0.0 });
+            *lanes = Lanes(finite);
+        }
+    }
+
+    /// Begins a step among other strands, in the fastest way here.
+    pub fn prepare(&mut self, rod: &[Node<f32x8>], viscous: f32x8) {
+        match &mut self.avx {
+            Some(avx) => avx.prepare(&mut self.work, rod, &self.pulls, viscous),
+            None => self.work.prepare(rod, viscous),
+        }
+    }
+
+    /// A Newton step of it.
+    pub fn push(
+        &mut self,
+        rod: &[Node<f32x8>],
+        pushes: &[Push<f32x8>],
+        settings: &StepSettings<f32x8>,
+        first: bool,
+        open: f32x8,
+    ) -> Turned<f32x8> {
+        match &mut self.avx {
+            Some(avx) => avx.push(&mut self.work, pushes, settings, first, open),
+            None => self.work.push(rod, (&self.pulls, pushes), settings, first, open),
+        }
+    }
+
+    /// The answer to forces \[N\] with the factors of that step, in `work.step`.
+    pub fn answer(&mut self, rod: &[Node<f32x8>], forces: &[Vector<f32x8>]) {
+        match &mut self.avx {
+            Some(avx) => avx.answer(&mut self.work, forces),
+            None => self.work.answer(rod, forces),
+        }
+    }
+
+    /// Takes the displacements in `work.step`.
+    pub fn settle(&mut self, open: f32x8) {
+        match &mut self.avx {
+            Some(avx) => avx.settle(&mut self.work, open),
+            None => self.work.settle(open),
         }
     }
 

@@ -1,0 +1,119 @@
+//! Strands among strands: bundles that lie on bundles, a strand on rails. On the CPU, the only backend that has contacts.
+
+use glam::Vec3;
+use strandline_checks::{On, Rig};
+use strandline_groom::{Groom, Guides, LANES, RestShape};
+use strandline_sim::rods::Rest;
+use strandline_sim::{ContactReport, Drag, Drive, Model, Settings, State, VolumeSettings};
+
+/// Radius of a wisp \[m\].
+const RADIUS: f32 = 1.25e-3;
+/// Strands of a bundle along each side of its section, and points of each.
+const SIDE: usize = 3;
+const POINTS: usize = 24;
+/// Distance of a strand's ends \[m\].
+const SPAN: f32 = 0.3;
+
+/// Soft strands that push each other, and nothing else.
+fn settings() -> Settings {
+    let volume = VolumeSettings { enabled: false, ..VolumeSettings::default() };
+    let mut settings = Settings { drag: Drag::OFF, volume, ..Settings::default() };
+    settings.strands.rods.rest = Rest::Unstressed;
+    settings.strands.rods.wisp_hairs = 50;
+    settings.contact.enabled = true;
+    settings.contact.hairs = Some((RADIUS / 4e-5).powi(2) * settings.contact.packing);
+    settings
+}
+
+/// Nine strands along z, a tenth longer than their span in waves aside, over nine along x that are a thousandth longer;
+/// `above` \[m\] apart. All are held at both ends.
+fn bundles(above: f32, settings: &Settings) -> Model {
+    let pitch = 2.04 * RADIUS;
+    let sag = SPAN * (0.375e-3_f32).sqrt();
+    let aside = |index: usize| pitch * ((index % SIDE) as f32 - 0.5 * (SIDE - 1) as f32);
+    let shares = || (0..=400).map(|index| index as f32 / 400.0 - 0.5);
+    let mut groom = Groom::empty(8e-5);
+    for index in 0..SIDE * SIDE {
+        let low = pitch * (index / SIDE) as f32;
+        let hangs = |x: f32| Vec3::new(SPAN * x, -low - sag * (1.0 - 4.0 * x * x), aside(index));
+        groom.push(shares().map(hangs));
+    }
+    let waves = 3.0 * std::f32::consts::TAU / SPAN;
+    let high = 2.0 * 0.1_f32.sqrt() / waves;
+    for index in 0..SIDE * SIDE {
+        let place = Vec3::new(aside(index), pitch * (1 + index / SIDE) as f32 - sag + above, 0.0);
+        let wave = |x: f32| Vec3::new(high * (waves * SPAN * (x + 0.5)).sin(), 0.0, SPAN * x);
+        groom.push(shares().map(|x| place + wave(x)));
+    }
+    let guides = Guides::resample(&groom, POINTS).unwrap();
+    let rest = RestShape::new(&guides, settings.line_density());
+    let held = |_, point: usize| point == 0 || point == POINTS - 1;
+    Model::with_rest(&guides, rest, held, settings, Vec::new()).unwrap()
+}
+
+/// Height \[m\] of the middle of a strand.
+fn middle(state: &State, strand: usize) -> f32 {
+    let height = |point: usize| state.positions[strand / LANES * POINTS + point].get(strand % LANES).y;
+    0.5 * (height(POINTS / 2 - 1) + height(POINTS / 2))
+}
+
+/// Contacts, largest speed \[m/s\] and heights of all middles \[m\] after a number of steps.
+fn rested(above: f32, settings: &Settings, steps: usize) -> (Option<ContactReport>, f32, Vec<f32>) {
+    let mut rig = Rig::new(&On::Cpu, bundles(above, settings));
+    let report = rig.steps(&vec![Drive::default(); steps]).pop().unwrap();
+    let state = rig.state();
+    let heights = (0..2 * SIDE * SIDE).map(|strand| middle(state, strand)).collect();
+    (report.contacts, report.speed_max, heights)
+}
+
+/// Strands of the upper bundle whose middle is below all of the lower one.
+fn passed(heights: &[f32]) -> usize {
+    let (lower, upper) = heights.split_at(SIDE * SIDE);
+    let lowest = lower.iter().copied().fold(f32::MAX, f32::min);
+    upper.iter().filter(|height| **height < lowest).count()
+}
+
+#[test]
+fn a_bundle_rests_on_the_one_beneath_it() {
+    // Laid on it, and let fall by a centimetre and a half.
+    for above in [0.0, 0.015] {
+        let (contacts, speed, heights) = rested(above, &settings(), 150);
+        let contacts = contacts.unwrap();
+        assert_eq!(passed(&heights), 0, "{above}: {heights:?}");
+        // A tenth of a radius; 0.01 mm were found.
+        assert!(contacts.deepest < 0.1 * RADIUS && contacts.crossed == 0, "{above}: {contacts:?}");
+        assert!(contacts.pairs > 20 && speed < 5e-4, "{above}: {contacts:?}, {speed} m/s");
+    }
+    let (contacts, _, heights) = rested(0.0, &Settings { contact: Default::default(), ..settings() }, 150);
+    assert!(contacts.is_none() && passed(&heights) == SIDE * SIDE, "without contact all fall through");
+}
+
+/// Way \[m\] in half a second of a loose strand on two rails that do not move, under gravity with a slope along them.
+fn slid(slope: f32) -> f32 {
+    let mut settings = Settings { gravity: Vec3::new(9.81 * slope, -9.81, 0.0), ..settings() };
+    settings.strands.rods.rubbing = 0.0;
+    let mut groom = Groom::empty(8e-5);
+    for z in [-0.025, 0.025] {
+        groom.push([Vec3::new(-0.1, 0.0, z), Vec3::new(0.3, 0.0, z)]);
+    }
+    groom.push([Vec3::new(0.0, 2.0 * RADIUS, -0.04), Vec3::new(0.0, 2.0 * RADIUS, 0.04)]);
+    let guides = Guides::resample(&groom, 12).unwrap();
+    let rest = RestShape::new(&guides, settings.line_density());
+    let model = Model::with_rest(&guides, rest, |strand, _| strand < 2, &settings, Vec::new()).unwrap();
+    let mut rig = Rig::new(&On::Cpu, model);
+    rig.steps(&vec![Drive::default(); 30]);
+    let place = |state: &State| (0..12).map(|point| state.positions[point].get(2).x).sum::<f32>() / 12.0;
+    place(rig.state())
+}
+
+#[test]
+fn a_strand_on_rails_slides_from_the_slope_of_friction_on() {
+    let contact = settings().contact;
+    let holds = slid(contact.friction - 0.015);
+    assert!(holds.abs() < 2e-3, "it slides by {holds} m");
+    let slope = contact.friction + 0.1;
+    let expected = 0.125 * 9.81 * (slope - contact.sliding_friction);
+    let slides = slid(slope);
+    // 2 % of it are the steps of a fall from rest, and it comes to press within the first.
+    assert!((slides / expected - 1.0).abs() < 0.1, "{slides} m, expected {expected}");
+}

@@ -1,0 +1,255 @@
+//! One block of rods among others: Newton steps with what holds its points, and rounds with their factors kept.
+
+use glam::Vec3;
+use strandline_groom::{LANES, Lanes, Vec3Lanes};
+use wide::f32x8;
+
+use super::solve_rods::Hair;
+use crate::contact::planes::Plane;
+use crate::grab::Pinned;
+use crate::strands::rods::real::{Real, Vector};
+use crate::strands::rods::rod::{Solved, StepSettings};
+use crate::strands::rods::rounds::Push;
+use crate::strands::rods::workspace::Workspace;
+use crate::wisps::pair::Near;
+
+/// One block of strands among others.
+#[derive(Clone)]
+pub(super) struct Room {
+    pub(super) space: Workspace,
+    settings: StepSettings<f32x8>,
+    pub(super) pinned: Vec<Pinned>,
+    /// Pairs of the block: index in the list, and which of both segments is its own.
+    pub(super) touches: Vec<[u32; 2]>,
+    /// Stiffness \[N/m\] that holds each point, and by which it holds the next; shape `[point]` of lanes.
+    own: Vec<Lanes>,
+    next: Vec<Lanes>,
+    /// Forces \[N\], steps and the sum of the steps of rounds \[m, rad\], shape `[point]`.
+    forces: Vec<Vec3Lanes>,
+    pushed: Vec<Vector<f32x8>>,
+    pushes: Vec<Push<f32x8>>,
+    steps: Vec<Vector<f32x8>>,
+    sums: Vec<[f32x8; 4]>,
+    /// Above 0: strands that have pairs, that are not solved, and whose last Newton step was whole.
+    meets: f32x8,
+    open: f32x8,
+    whole: f32x8,
+    /// Force \[N\] of what presses a strand, and largest turn \[rad\] of its last Newton step.
+    pressed: f32x8,
+    turn: f32x8,
+}
+
+impl Room {
+    pub(super) fn new(points: usize) -> Self {
+        let zero = Vector::zero();
+        Self {
+            space: Workspace::new(points),
+            settings: StepSettings { time_step: 0.0, newton_steps: 0, tolerance: 0.0, viscous: f32x8::ZERO },
+            pinned: Vec::new(),
+            touches: Vec::new(),
+            own: vec![Lanes::default(); points],
+            next: vec![Lanes::default(); points],
+            forces: vec![Vec3Lanes::default(); points],
+            pushed: vec![zero; points],
+            pushes: vec![Push::zero(); points],
+            steps: vec![zero; points],
+            sums: vec![[f32x8::ZERO; 4]; points],
+            meets: f32x8::ZERO,
+            open: f32x8::ZERO,
+            whole: f32x8::ZERO,
+            pressed: f32x8::ZERO,
+            turn: f32x8::ZERO,
+        }
+    }
+}
+
+impl Room {
+    pub(super) fn begin(
+        &mut self,
+        hair: &Hair,
+        planes: &mut [Plane],
+        block: usize,
+        part: u32,
+        (start, coast): (&mut [Vec3Lanes], &mut [Vec3Lanes]),
+    ) {
+        let strands = hair.strands(block);
+        let space = &mut self.space;
+        self.settings = strands.begin_part(space, planes, &self.pinned, part);
+        for (point, node) in strands.nodes.iter().enumerate() {
+            space.points[point].store(&mut start[point]);
+            let rides = space.carried[point] - space.points[point];
+            Vector::choose(node.free, rides + space.coast[point], rides).store(&mut coast[point]);
+        }
+    }
+
+    /// Begins Newton's method, and finds how stiffly rounds hold the points.
+    pub(super) fn hold(&mut self, near: &[Near], hair: &Hair, block: usize, ways: &mut [Vec3Lanes]) {
+        (self.open, self.pressed, self.whole) = (f32x8::of(1.0), f32x8::ZERO, f32x8::ZERO);
+        let mut meets = [0.0; LANES];
+        if !self.touches.is_empty() {
+            self.own.fill(Lanes::default());
+            self.next.fill(Lanes::default());
+            for &[index, side] in &self.touches {
+                let (near, side) = (&near[index as usize], side as usize);
+                let (point, lane) = self.place(near, side);
+                let (stiffness, share) = (near.holds[side], near.shares[side]);
+                self.own[point].0[lane] += stiffness * (1.0 - share) * (1.0 - share);
+                self.own[point + 1].0[lane] += stiffness * share * share;
+                self.next[point].0[lane] += stiffness * share * (1.0 - share);
+                meets[lane] = 1.0;
+            }
+            self.space.prepare(hair.strands(block).nodes, self.settings.viscous);
+            self.sums.fill([f32x8::ZERO; 4]);
+            self.give_ways(ways);
+        }
+        self.meets = f32x8::from(meets);
+    }
+
+    /// Point and lane of a pair's segment in this block.
+    #[inline]
+    fn place(&self, near: &Near, side: usize) -> (usize, usize) {
+        let segment = near.segments[side] as usize;
+        (segment / LANES % self.own.len(), segment % LANES)
+    }
+
+    /// Sums a force of each pair at the points.
+    fn gather(&mut self, near: &[Near], force: fn(&Near) -> Vec3) {
+        self.forces.fill(Vec3Lanes::default());
+        for &[index, side] in &self.touches {
+            let (near, side) = (&near[index as usize], side as usize);
+            let (point, lane) = self.place(near, side);
+            let force = if side == 0 { force(near) } else { -force(near) };
+            let share = near.shares[side];
+            for (point, share) in [(point, 1.0 - share), (point + 1, share)] {
+                let sum = &mut self.forces[point];
+                sum.set(lane, sum.get(lane) + force * share);
+            }
+        }
+    }
+
+    /// Forces with which steps are held.
+    fn add_held(&mut self) {
+        let last = self.steps.len() - 1;
+        for point in 0..=last {
+            let mut held = self.steps[point] * f32x8::new(self.own[point].0);
+            if point < last {
+                held += self.steps[point + 1] * f32x8::new(self.next[point].0);
+            }
+            if point > 0 {
+                held += self.steps[point - 1] * f32x8::new(self.next[point - 1].0);
+            }
+            self.pushed[point] = Vector::load(&self.forces[point]) + held;
+        }
+    }
+
+    /// A Newton step.
+    pub(super) fn push(
+        &mut self,
+        near: &[Near],
+        hair: &Hair,
+        block: usize,
+        newton: u32,
+        (ways, coast): (&mut [Vec3Lanes], &[Vec3Lanes]),
+    ) {
+        let strands = hair.strands(block);
+        if self.touches.is_empty() {
+            return;
+        }
+        self.gather(near, |near| near.given);
+        for (point, step) in self.steps.iter_mut().enumerate() {
+            // Rounds begin with hair that keeps its velocity.
+            let from = if newton == 0 {
+                Vector::load(&coast[point]) - Vector::load(&ways[point])
+            } else {
+                Vector::zero()
+            };
+            *step = Vector::choose(self.meets, from, Vector::zero());
+        }
+        self.add_held();
+        for (point, push) in self.pushes.iter_mut().enumerate() {
+            let (own, next) = (f32x8::new(self.own[point].0), f32x8::new(self.next[point].0));
+            *push = Push { force: self.pushed[point], own, next };
+        }
+        let first = newton == 0;
+        let turned = self.space.push(strands.nodes, &self.pushes, &self.settings, first, self.open);
+        for (point, step) in self.steps.iter_mut().enumerate() {
+            let [x, y, z, _] = self.space.work.step[point];
+            *step = Vector::new(x, y, z);
+        }
+        self.give_ways(ways);
+        if first {
+            for (point, step) in self.steps.iter_mut().enumerate() {
+                *step = Vector::load(&ways[point]) - Vector::load(&coast[point]);
+            }
+        }
+        self.pressed = self.open.choose(turned.pressed, self.pressed);
+        self.turn = self.open.choose(turned.turn, self.turn);
+        self.whole = self.meets.choose(turned.whole, f32x8::ZERO);
+        let more = turned.turn - f32x8::of(self.settings.tolerance);
+        let more = if first { turned.pressed.choose(f32x8::of(1.0), more) } else { more };
+        let alone = self.open.choose(more.choose(f32x8::of(1.0), f32x8::ZERO), f32x8::ZERO);
+        self.open = self.meets.choose(f32x8::of(1.0), alone);
+    }
+
+    /// A round: the answer to the change of forces.
+    pub(super) fn round(&mut self, near: &[Near], hair: &Hair, block: usize, ways: &mut [Vec3Lanes]) {
+        if self.touches.is_empty() {
+            return;
+        }
+        self.gather(near, |near| near.change);
+        self.add_held();
+        for force in &mut self.pushed {
+            *force = Vector::choose(self.whole, *force, Vector::zero());
+        }
+        self.space.answer(hair.strands(block).nodes, &self.pushed);
+        for (point, way) in ways.iter_mut().enumerate() {
+            let step = self.space.work.step[point];
+            let [x, y, z, _] = step;
+            self.steps[point] = Vector::new(x, y, z);
+            for (sum, step) in self.sums[point].iter_mut().zip(step) {
+                *sum += step;
+            }
+            (Vector::load(way) + self.steps[point]).store(way);
+        }
+    }
+
+    /// Takes the steps of the rounds.
+    pub(super) fn settle(&mut self) {
+        if self.touches.is_empty() {
+            return;
+        }
+        self.space.work.step.copy_from_slice(&self.sums);
+        self.space.settle(self.whole);
+        self.sums.fill([f32x8::ZERO; 4]);
+    }
+
+    fn give_ways(&self, ways: &mut [Vec3Lanes]) {
+        let space = &self.space;
+        for (point, way) in ways.iter_mut().enumerate() {
+            let [x, y, z, _] = space.work.moved[point];
+            (Vector::new(x, y, z) + (space.carried[point] - space.points[point])).store(way);
+        }
+    }
+
+    pub(super) fn end(&mut self, hair: &Hair, planes: &mut [Plane], block: usize, near: &[Near]) {
+        let strands = hair.strands(block);
+        let solved = if self.touches.is_empty() {
+            self.space.solve(strands.nodes, &self.settings)
+        } else {
+            let mut pressed = self.pressed.to_array();
+            for &[index, side] in &self.touches {
+                let near = &near[index as usize];
+                let lane = self.place(near, side as usize).1;
+                pressed[lane] = pressed[lane].max(near.normal.dot(near.force));
+            }
+            self.space.work.step.fill([f32x8::ZERO; 4]);
+            Solved {
+                steps: self.settings.newton_steps,
+                unsolved: (self.turn - f32x8::of(self.settings.tolerance)).fast_max(f32x8::ZERO),
+                residual: self.turn,
+                pressed: f32x8::from(pressed),
+            }
+        };
+        strands.end_part(&mut self.space, planes, &solved);
+    }
+}

@@ -1,0 +1,113 @@
+//! Answers of a strand to the forces of others: Newton steps with what holds its points, and rounds with their factors
+//! kept.
+
+use super::front::{ROWS, UNKNOWNS, substitute};
+use super::real::{Real, Vector};
+use super::rod::{Node, Pull, StepSettings, Work};
+
+/// Effect of other strands on a node.
+#[derive(Clone, Copy, Debug)]
+pub struct Push<R> {
+    /// Force \[N\].
+    pub force: Vector<R>,
+    /// Stiffness \[N/m\] that holds the node where it is.
+    pub own: R,
+    /// Stiffness \[N/m\] by which it holds the next one.
+    pub next: R,
+}
+
+impl<R: Real> Push<R> {
+    /// No effect.
+    pub fn zero() -> Self {
+        Self { force: Vector::zero(), own: R::of(0.0), next: R::of(0.0) }
+    }
+}
+
+/// Result of a Newton step.
+#[derive(Clone, Copy, Debug)]
+pub struct Turned<R> {
+    /// Largest force \[N\] of a solid on a strand.
+    pub pressed: R,
+    /// Largest turn of a segment \[rad\].
+    pub turn: R,
+    /// 1 for strands whose whole step was taken, else 0.
+    pub whole: R,
+}
+
+/// Largest turn of a segment \[rad\] in a step after which tensions are kept.
+const CALM: f64 = 0.1;
+
+impl<R: Real> Work<R> {
+    /// A Newton step of the strands with `open` above 0, under the pushes.
+    #[inline(always)]
+    pub fn push(
+        &mut self,
+        rod: &[Node<R>],
+        (pulls, pushes): (&[Pull<R>], &[Push<R>]),
+        settings: &StepSettings<R>,
+        first: bool,
+        open: R,
+    ) -> Turned<R> {
+        let stiffer = R::of(1.0) + settings.viscous;
+        let step = settings.time_step;
+        let (pressed, mut sound) = self.factorise(rod, (pulls, pushes), stiffer, step, first, R::of(1.0));
+        if open.choose(R::of(1.0) - sound, R::of(0.0)).any_positive() {
+            (_, sound) = self.factorise(rod, (pulls, pushes), stiffer, step, first, sound);
+        }
+        substitute(&self.factors, &mut self.step);
+        self.begin_tensions(rod, sound.choose(open, R::of(0.0)));
+        let (turn, whole) = self.take_whole_step(open, sound);
+        Turned { pressed, turn, whole }
+    }
+
+    /// The displacements by which the system of the last Newton step answers forces \[N\]: into `step`, with the factors
+    /// kept.
+    #[inline(always)]
+    pub fn answer(&mut self, rod: &[Node<R>], forces: &[Vector<R>]) {
+        let mut right = [R::of(0.0); ROWS];
+        for (factors, force) in self.factors.iter_mut().zip(forces) {
+            let [x, y, z] = force.array();
+            (right[0], right[1], right[2]) = (right[0] + x, right[1] + y, right[2] + z);
+            factors.solve(&mut right);
+            for row in 0..ROWS - UNKNOWNS {
+                right[row] = right[row + UNKNOWNS];
+            }
+            right[ROWS - UNKNOWNS..].fill(R::of(0.0));
+        }
+        substitute(&self.factors, &mut self.step);
+        self.tighten(rod);
+    }
+
+    /// Tensions of the strands with `open` above 0 after a Newton step, to first order: with them the next system finds
+    /// lengths that are exact, whatever the strand carries. Strands that turn far have none.
+    #[inline(always)]
+    fn begin_tensions(&mut self, rod: &[Node<R>], open: R) {
+        self.calm = open.choose((R::of(CALM) - self.turn()).choose(R::of(1.0), R::of(0.0)), R::of(0.0));
+        for index in 0..rod.len() - 1 {
+            let (segment, node) = (&self.segments[index], &rod[index]);
+            self.tangents[index] = segment.tangent;
+            let strained = node.stretch / node.length * (segment.length - node.length);
+            let forgotten = open.choose(R::of(-0.0), self.tensions[index]);
+            self.tensions[index] = self.calm.choose(self.tensions[index] + strained, forgotten);
+        }
+        self.tighten(rod);
+    }
+
+    /// Adds what the displacements in `step` change.
+    #[inline(always)]
+    fn tighten(&mut self, rod: &[Node<R>]) {
+        for index in 0..rod.len() - 1 {
+            let ([x, y, z, _], [u, v, w, _]) = (self.step[index], self.step[index + 1]);
+            let longer = self.tangents[index].dot(Vector::new(u - x, v - y, w - z));
+            let tension = rod[index].stretch / rod[index].length * longer;
+            self.tensions[index] += self.calm.choose(tension, R::of(-0.0));
+        }
+    }
+
+    /// Takes the displacements in `step` for the strands with `open` above 0, shortened where a segment would turn too
+    /// far.
+    #[inline(always)]
+    pub fn settle(&mut self, open: R) {
+        self.take_whole_step(open, R::of(1.0));
+    }
+}

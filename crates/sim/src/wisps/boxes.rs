@@ -1,0 +1,183 @@
+//! Pairs of segments whose boxes meet, by cells.
+
+use glam::{IVec3, Vec3};
+use strandline_base::par::prelude::*;
+
+use crate::cells::grid::REACH;
+
+/// Most cells that a box takes along an axis: of a larger one those about its middle.
+const MOST_CELLS: i32 = 8;
+/// Boxes whose pairs one thread looks for at a time.
+const CHUNK: usize = 256;
+
+/// A box about the way of a segment.
+#[derive(Clone, Copy, Debug)]
+pub struct Around {
+    /// Corners \[m\].
+    pub low: Vec3,
+    pub high: Vec3,
+    /// Number of the segment, and of its strand.
+    pub segment: u32,
+    pub strand: u32,
+}
+
+impl Around {
+    fn meets(&self, other: &Self) -> bool {
+        self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
+    }
+}
+
+/// Cells that boxes take, from the first to the last along each axis.
+#[derive(Clone, Copy)]
+struct Range {
+    first: IVec3,
+    last: IVec3,
+}
+
+/// Boxes sorted by buckets of cells, and the room for it.
+#[derive(Clone, Debug, Default)]
+pub struct Boxes {
+    /// Where the boxes of each bucket begin.
+    starts: Vec<u32>,
+    /// Indices of boxes, bucket after bucket, rising.
+    order: Vec<u32>,
+}
+
+impl Boxes {
+    /// Replaces `pairs` by the segments of all boxes of different strands that meet, each pair once, the lower number
+    /// first, in rising order. Segments of boxes rise.
+    pub fn pairs(&mut self, boxes: &[Around], pairs: &mut Vec<[u32; 2]>) {
+        pairs.clear();
+        let Some(per_metre) = cells_per_metre(boxes) else { return };
+        let ranges: Vec<Range> = boxes.par_iter().map(|one| range(one, per_metre)).collect();
+        let buckets = self.sort(&ranges);
+        let found: Vec<Vec<[u32; 2]>> = (0..boxes.len().div_ceil(CHUNK))
+            .into_par_iter()
+            .map(|chunk| {
+                let mut found = Vec::new();
+                for one in chunk * CHUNK..((chunk + 1) * CHUNK).min(boxes.len()) {
+                    self.partners(one, boxes, &ranges, buckets, &mut found);
+                }
+                found
+            })
+            .collect();
+        found.iter().for_each(|found| pairs.extend_from_slice(found));
+    }
+
+    /// Sorts boxes by the buckets of their cells; returns the number of buckets less one.
+    fn sort(&mut self, ranges: &[Range]) -> u32 {
+        let entries: usize = ranges.iter().map(|range| cells(range).count()).sum();
+        let buckets = entries.max(1).next_power_of_two();
+        let mask = buckets as u32 - 1;
+        self.starts.clear();
+        self.starts.resize(buckets + 1, 0);
+        for cell in ranges.iter().flat_map(cells) {
+            self.starts[bucket(cell, mask) as usize + 1] += 1;
+        }
+        for index in 0..buckets {
+            self.starts[index + 1] += self.starts[index];
+        }
+        self.order.clear();
+        self.order.resize(entries, 0);
+        for (index, range) in ranges.iter().enumerate().rev() {
+            for cell in cells(range) {
+                let end = &mut self.starts[bucket(cell, mask) as usize + 1];
+                *end -= 1;
+                self.order[*end as usize] = index as u32;
+            }
+        }
+        // Each end is now the start of its own bucket.
+        self.starts.remove(0);
+        self.starts.push(entries as u32);
+        mask
+    }
+
+    fn partners(&self, one: usize, boxes: &[Around], ranges: &[Range], mask: u32, found: &mut Vec<[u32; 2]>) {
+        let (own, first) = (&boxes[one], found.len());
+        for cell in cells(&ranges[one]) {
+            let bucket = bucket(cell, mask) as usize;
+            for &other in &self.order[self.starts[bucket] as usize..self.starts[bucket + 1] as usize] {
+                let other = other as usize;
+                // Found in the cell of the higher of both lower corners alone.
+                if other > one
+                    && boxes[other].strand != own.strand
+                    && ranges[one].first.max(ranges[other].first) == cell
+                    && own.meets(&boxes[other])
+                {
+                    found.push([own.segment, boxes[other].segment]);
+                }
+            }
+        }
+        found[first..].sort_unstable();
+    }
+}
+
+/// Cells per metre: a cell is as long as the mean of the longest sides.
+fn cells_per_metre(boxes: &[Around]) -> Option<f32> {
+    let sides: f64 = boxes.iter().map(|one| f64::from((one.high - one.low).max_element())).sum();
+    let mean = (sides / boxes.len() as f64) as f32;
+    (mean > 0.0 && mean.is_finite()).then(|| 1.0 / mean)
+}
+
+fn range(one: &Around, per_metre: f32) -> Range {
+    let most = REACH * per_metre.min(1e5);
+    let cell =
+        |point: Vec3| (point * per_metre).clamp(Vec3::splat(-most), Vec3::splat(most)).floor().as_ivec3();
+    let (first, last) = (cell(one.low), cell(one.high));
+    let middle = cell(0.5 * (one.low + one.high));
+    let half = IVec3::splat(MOST_CELLS / 2);
+    Range { first: first.max(middle - half), last: last.min(middle + half) }
+}
+
+fn cells(range: &Range) -> impl Iterator<Item = IVec3> + use<> {
+    let Range { first, last } = *range;
+    (first.z..=last.z).flat_map(move |z| {
+        (first.y..=last.y).flat_map(move |y| (first.x..=last.x).map(move |x| IVec3::new(x, y, z)))
+    })
+}
+
+/// Bucket of a cell [Teschner2003], as that of a lattice.
+fn bucket(cell: IVec3, mask: u32) -> u32 {
+    let [x, y, z] = cell.to_array().map(|number| number as u32);
+    x.wrapping_mul(73_856_093)
+        .wrapping_add(y.wrapping_mul(19_349_663))
+        .wrapping_add(z.wrapping_mul(83_492_791))
+        & mask
+}
+
+#[cfg(test)]
+mod tests {
+    use strandline_body::Random;
+
+    use super::*;
+
+    #[test]
+    fn each_pair_of_boxes_that_meet_is_found_once() {
+        let mut random = Random::new(7, 0);
+        let boxes: Vec<Around> = (0..700)
+            .map(|segment| {
+                let mut vector = |size: f32| Vec3::new(random.unit(), random.unit(), random.unit()) * size;
+                let low = vector(1.0) - Vec3::splat(0.5);
+                let side = if segment % 50 == 0 { 0.3 } else { 0.06 };
+                Around { low, high: low + vector(side), segment, strand: segment / 10 }
+            })
+            .collect();
+        let mut expected = Vec::new();
+        for one in &boxes {
+            for other in boxes.iter().filter(|other| other.segment > one.segment) {
+                if one.strand != other.strand && one.meets(other) {
+                    expected.push([one.segment, other.segment]);
+                }
+            }
+        }
+        let mut found = Vec::new();
+        let mut room = Boxes::default();
+        for _ in 0..2 {
+            room.pairs(&boxes, &mut found);
+            assert!(expected.len() > 100);
+            assert_eq!(found, expected);
+        }
+        room.pairs(&[], &mut found);
+        assert!(found.is_empty());
+    }
+}

@@ -1,0 +1,129 @@
+//! Pairs of segments that touch or nearly do, their memory, and the force of Coulomb's law between them.
+
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+use strandline_groom::LANES;
+
+use crate::SimError;
+
+/// Memory of a pair from one part of a step to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Pair {
+    /// Numbers of both segments, that of a lane `[block][point][lane]`; the lower one first.
+    pub segments: [u32; 2],
+    /// Unit vector from the second segment to the first, on the side where they belong.
+    pub normal: [f32; 3],
+    /// Force on the first segment \[N\].
+    pub force: [f32; 3],
+    /// Distance along the normal at the end of the part \[m\].
+    pub gap: f32,
+    /// 1 for a pair that slides, 0 for one that sticks.
+    pub slides: f32,
+}
+
+impl Pair {
+    /// Numbers of a pair in a checkpoint.
+    pub const NUMBERS: usize = 12;
+
+    /// Its numbers. A segment takes two of them, which single precision holds whole.
+    pub fn numbers(&self) -> [f32; Self::NUMBERS] {
+        let [one, other] =
+            self.segments.map(|segment| [segment >> 16, segment & 0xffff].map(|half| half as f32));
+        let ([x, y, z], [u, v, w]) = (self.normal, self.force);
+        [one[0], one[1], other[0], other[1], x, y, z, u, v, w, self.gap, self.slides]
+    }
+
+    /// Pairs from their numbers, of strands with a number of points in a number of places of eight lanes.
+    ///
+    /// # Errors
+    /// Pairs of other hair, or not in their order.
+    pub fn restored(numbers: &[f32], places: usize, points: usize) -> Result<Vec<Self>, SimError> {
+        let is_segment = |segment: u32| {
+            let index = segment as usize / LANES;
+            index < places && index % points + 1 < points
+        };
+        let pairs: Vec<Self> = numbers.chunks_exact(Self::NUMBERS).map(Self::from_numbers).collect();
+        let in_order = pairs.windows(2).all(|two| two[0].segments < two[1].segments);
+        match pairs.iter().find(|pair| !pair.segments.into_iter().all(is_segment)) {
+            None if in_order => Ok(pairs),
+            wrong => Err(SimError::Checkpoint {
+                found: wrong.map_or_else(
+                    || "pairs in another order".to_owned(),
+                    |pair| format!("a pair of segments {:?}", pair.segments),
+                ),
+                expected: "pairs of segments of this hair, in rising order".to_owned(),
+            }),
+        }
+    }
+
+    fn from_numbers(numbers: &[f32]) -> Self {
+        let whole = |at: usize| (numbers[at] as u32) << 16 | (numbers[at + 1] as u32 & 0xffff);
+        Self {
+            segments: [whole(0), whole(2)],
+            normal: [numbers[4], numbers[5], numbers[6]],
+            force: [numbers[7], numbers[8], numbers[9]],
+            gap: numbers[10],
+            slides: numbers[11],
+        }
+    }
+}
+
+/// A pair within a part of a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Near {
+    pub segments: [u32; 2],
+    /// Shares of both segments.
+    pub shares: [f32; 2],
+    pub normal: Vec3,
+    /// Distance \[m\] of the axes where wisps touch, and along the normal where the part begins.
+    pub touch: f32,
+    pub gap: f32,
+    /// Way \[m\] along the normal of the first against the second that the pair needs at least.
+    pub needs: f32,
+    /// Stiffness \[N/m\] with which rounds hold each of both places; 0 of what the head carries.
+    pub holds: [f32; 2],
+    /// Force over relative way with which a round changes the force \[N/m\].
+    pub stiffness: f32,
+    /// Force on the first segment \[N\].
+    pub force: Vec3,
+    /// Force that strands were given last, and its change since \[N\].
+    pub given: Vec3,
+    pub change: Vec3,
+    /// True for a pair that slid in the part before, and for one that slides now.
+    pub slid: bool,
+    pub slides: bool,
+}
+
+/// Coefficients of friction: of what sticks and of what slides.
+#[derive(Clone, Copy, Debug)]
+pub struct Friction {
+    pub sticks: f32,
+    pub slides: f32,
+}
+
+impl Near {
+    /// A round: the force answers the relative way \[m\] of both places, by the augmented Lagrangian of contact and
+    /// Coulomb's law. Strands get the force with its change once more, as in alternating directions [Daviet2023].
+    #[inline]
+    pub fn answer(&mut self, way: Vec3, friction: Friction) {
+        if !way.is_finite() {
+            (self.change, self.given, self.force) = (-self.given, Vec3::ZERO, Vec3::ZERO);
+            return;
+        }
+        let along = self.normal.dot(way);
+        let old = self.normal.dot(self.force);
+        let push = (old + self.stiffness * (self.needs - along)).max(0.0);
+        let aside = way - self.normal * along;
+        let held = self.force - self.normal * old - aside * self.stiffness;
+        let size = held.length();
+        let limit = push * if self.slid { friction.slides } else { friction.sticks };
+        self.slides = size > limit;
+        let rubs =
+            if self.slides { held * (push * friction.slides.min(friction.sticks) / size) } else { held };
+        let force = self.normal * push + rubs;
+        let given = force * 2.0 - self.force;
+        self.change = given - self.given;
+        (self.given, self.force) = (given, force);
+    }
+}
