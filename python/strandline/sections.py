@@ -548,10 +548,11 @@ class Colliders(TypedDict, total=False):
 
 
 class SimulationDrag(TypedDict, total=False):
-    """Drag of the air. Hair takes the velocity of the wind at two rates, `across` and `along` the strand. With
-    `factor` rods feel the force of a flow on a cylinder as thin as their hair instead [Cheng2013, Collis1959]; that
-    of a wisp is at most the force on a cylinder as thick as the wisp. Hair and solids take the wind from the hair
-    behind them (`shelter`)."""
+    """Drag of the air. Rods feel the force of a flow on a cylinder as thin as their hair [Cheng2013, Collis1959];
+    that of a wisp is at most the force on a cylinder as thick as the wisp. Hair and solids take the wind from the
+    hair behind them (`shelter`). Without `factor` hair takes the velocity of the wind at two rates, `across` and
+    `along` the strand, as strands of springs and constraints do. A file that gives a rate and no `factor` has a
+    `factor` of 0."""
 
     across: float
     """Rate at which hair takes the velocity of wind across the strand. Allowed: 0 to 1000 1/s."""
@@ -560,8 +561,8 @@ class SimulationDrag(TypedDict, total=False):
     """Rate at which hair takes the velocity of wind along the strand. Allowed: 0 to 1000 1/s."""
 
     factor: float
-    """Force of the air on rods over that of physics: 1 is physics, and stands for both rates. 0 leaves the rates.
-    Allowed: 0 to 1000."""
+    """Force of the air on rods over that of physics: 1 is physics. 0 leaves the two rates in its place. Allowed: 0 to
+    1000."""
 
     shelter: bool
     """Under `factor`: hair and solids hold back the wind from the hair behind them, and the air in a lock moves along
@@ -806,6 +807,32 @@ class SimulationGroups(TypedDict, total=False):
     numbers of 0.01 to 100."""
 
 
+class SimulationContact(TypedDict, total=False):
+    """Contact of strands with each other, of rods on the CPU. A guide is the wisp of the hairs that it stands for: a
+    chain of capsules of radius r sqrt(hairs / packing), at most half of the room to the nearest strand at rest, so
+    that nothing presses at rest."""
+
+    enabled: bool
+    """Strands push each other apart and rub. A GPU refuses it. Allowed: true or false."""
+
+    hairs: float
+    """Hairs that a guide stands for. Without it those of the look over the guides in a scene, else
+    `strands.rods.wisp_hairs`. Allowed: 1 to 1,000,000."""
+
+    packing: float
+    """Share of a wisp's section that hairs fill. Allowed: 0.01 to 1."""
+
+    friction: float
+    """Coulomb coefficient of strands that stick to each other. Allowed: 0 to 10."""
+
+    sliding_friction: float
+    """Coulomb coefficient of strands that slide, no more than `friction`. Allowed: 0 to 10."""
+
+    rounds: int
+    """Rounds of each part of a step in which strands and forces between them answer each other. Allowed: 1 to
+    1000."""
+
+
 class SimulationVolume(TypedDict, total=False):
     """The fluid volume, which keeps the density of hair [Chen2011 §4.2, McAdams2009]."""
 
@@ -864,6 +891,9 @@ class Simulation(TypedDict, total=False):
     """Groups of the groom whose hair, as rods, is made of something else, at most 1,024. A setting that a group does
     not give is that of `[simulation.strands.rods]`, or of its own `hair`. A shear modulus that is not given keeps its
     share of Young's modulus, or follows from Poisson's ratio where that is given. Allowed: 0 to 1024."""
+
+    contact: SimulationContact
+    """Contact of strands with each other, of rods on the CPU."""
 
     volume: SimulationVolume
     """The fluid volume, which keeps the density of hair [Chen2011 §4.2, McAdams2009]."""

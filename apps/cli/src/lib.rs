@@ -21,6 +21,7 @@ mod quiet;
 mod reading;
 mod render;
 mod sim;
+mod sim_report;
 mod statistics;
 mod values;
 #[cfg(feature = "window")]

@@ -48,9 +48,7 @@ pub use cpu::CpuRunner;
 pub use currents::{Currents, Eddy, Source};
 pub use error::SimError;
 pub use model::Model;
-pub use report::{
-    ContactReport, Drift, Extent, Measures, PressureReport, RodReport, StepReport, Stiffening,
-};
+pub use report::{ContactReport, Drift, Extent, Measures, PressureReport, RodReport, StepReport, Stiffening};
 pub use settings::{
     Drag, Preconditioner, Settings, StrandMethod, StrandSettings, VolumeMethod, VolumeSettings,
 };

@@ -4,7 +4,7 @@ use serde::Serialize;
 use strandline::{Backend, device::Gpu};
 
 use crate::output::print_line;
-use crate::sim::SimReport;
+use crate::sim_report::SimReport;
 
 /// The GPU that is measured.
 pub struct Device {

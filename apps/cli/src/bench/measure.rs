@@ -1,7 +1,8 @@
 use strandline::{Backend, Error, Event, Player, Scene};
 
 use crate::progress::Progress;
-use crate::sim::{Ended, SimReport, Steps};
+use crate::sim::{Ended, Steps};
+use crate::sim_report::SimReport;
 use crate::statistics::{Collector, Times};
 
 /// Plays a scene on the CPU and measures its steps, and its pictures when `draw`.

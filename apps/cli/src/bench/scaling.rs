@@ -6,7 +6,7 @@ use strandline::{Error, Scene, Settings, SimError, device::GpuError};
 use super::gpu::{Device, GpuRun};
 use super::measure::measure;
 use crate::output::print_line;
-use crate::sim::SimReport;
+use crate::sim_report::SimReport;
 
 /// Strands of 16 points: from 10,000 to 320,000 points.
 const STRANDS: [usize; 6] = [625, 1250, 2500, 5000, 10_000, 20_000];

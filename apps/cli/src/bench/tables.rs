@@ -3,7 +3,7 @@
 use super::gpu::{GpuRun, GradientTimes};
 use super::thesis_results::{GpuGrid, Grid, Pictures, Results};
 use crate::output::{print_line, print_part};
-use crate::sim::SimReport;
+use crate::sim_report::SimReport;
 
 /// GPU time of subtracting the pressure gradient \[us\], as one kernel and as three (table 1); over how many
 /// calls, and on which grid, the thesis does not say.

@@ -1,7 +1,7 @@
 use serde::Serialize;
 
 use super::gpu::{Forms, GpuRun};
-use crate::sim::SimReport;
+use crate::sim_report::SimReport;
 use crate::statistics::Times;
 
 #[derive(Debug, Serialize)]

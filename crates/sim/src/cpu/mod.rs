@@ -21,6 +21,7 @@ pub mod solve_rods;
 pub mod splat;
 pub mod volume;
 
+mod fall;
 pub(crate) mod length_pass;
 mod rod_air;
 mod rod_crowd;
@@ -29,6 +30,7 @@ mod rod_parts;
 mod rod_pulls;
 mod rod_rest;
 mod rod_room;
+mod rod_strands;
 pub(crate) mod spans;
 pub(crate) mod wind_box;
 

@@ -3,22 +3,18 @@
 
 use glam::Vec3;
 use strandline_base::par::prelude::*;
-use strandline_groom::{LANES, Lanes, Vec3Lanes};
+use strandline_groom::{LANES, Vec3Lanes};
 
-use super::Scratch;
-use super::advance::{Block, NonFinite, recover};
 use super::rod_pairs::Neighbours;
-use super::rod_parts::Parts;
 use super::rod_room::Room;
-use super::solve_rods::Hair;
-use crate::contact::Obstacles;
+use super::rod_strands::Hair;
+use crate::ContactReport;
 use crate::contact::planes::Plane;
 use crate::strands::rods::real::Vector;
 use crate::wisps::pair::{Friction, Near, Pair};
-use crate::{ContactReport, Model, RodReport, State};
 
 /// Blocks and pairs that a thread takes at a time.
-const BLOCKS: usize = 4;
+pub(super) const BLOCKS: usize = 4;
 const PAIRS: usize = 256;
 /// Distance over that of touching within which a pair is remembered.
 const REMEMBERED: f32 = 1.5;
@@ -28,7 +24,7 @@ const SLIPS: f32 = 5e-3;
 /// Scratch of strands that push each other, kept from step to step.
 #[derive(Clone, Default)]
 pub(crate) struct Crowd {
-    rooms: Vec<Room>,
+    pub(super) rooms: Vec<Room>,
     points: usize,
     /// Places where a part begins, and motions from there at the velocities of before and as found \[m\], world space, shape
     /// `[block][point]` of lanes.
@@ -41,72 +37,9 @@ pub(crate) struct Crowd {
     pub(crate) report: ContactReport,
 }
 
-/// As `solve_rods`, of strands that push each other.
-pub(super) fn solve_crowd(
-    model: &Model,
-    state: &mut State,
-    scratch: &mut Scratch,
-    obstacles: &Obstacles,
-    wind: Vec3,
-) -> (NonFinite, RodReport) {
-    let Some(rods) = &model.rods else { return Default::default() };
-    let points = model.points_per_strand;
-    let parts = Parts::new(model, obstacles, wind);
-    let flow = scratch.shelter.as_ref().map_or(&[][..], |shelter| &shelter.air[..]);
-    let nodes = scratch.nodes.as_ref().unwrap_or(&rods.nodes);
-    let masses = &scratch.masses;
-    let hair = Hair { model, rods, parts: &parts, nodes, lengths: &state.lengths, masses, flow };
-    let crowd = &mut scratch.crowd;
-    crowd.fit(state.positions.len(), points);
-    let tensions = &state.tensions;
-    let time_step = model.settings.time_step;
-    crowd.rooms.par_iter_mut().with_min_len(BLOCKS).enumerate().for_each(|(block, room)| {
-        let range = block * points..(block + 1) * points;
-        let spins = &state.spins[range.clone()];
-        let [places, speeds, sections, corrections, predicted] =
-            [&state.positions, &state.velocities, &state.sections, &state.corrections, &scratch.predicted]
-                .map(|vectors| &vectors[range.clone()]);
-        room.space.load(places, speeds, sections, spins);
-        room.space.load_remainders(corrections, time_step);
-        let strands = hair.strands(block);
-        strands.begin(&mut room.space);
-        room.space.set_tensions(tensions.get(range).unwrap_or_default());
-        room.pinned.clear();
-        room.pinned.extend(state.grab.pinned(block, predicted, strands.lengths, strands.inverse_mass));
-    });
-    for part in 0..parts.count {
-        crowd.part(&hair, &mut state.contacts.blocks, &mut state.pairs, part);
-    }
-    state.tensions.resize(state.positions.len(), Lanes::default());
-    crowd
-        .rooms
-        .par_iter_mut()
-        .zip(scratch.predicted.par_chunks_mut(points))
-        .zip(state.velocities.par_chunks_mut(points))
-        .zip(state.positions.par_chunks_mut(points))
-        .zip(state.sections.par_chunks_mut(points))
-        .zip(state.spins.par_chunks_mut(points))
-        .zip(state.corrections.par_chunks_mut(points))
-        .zip(state.tensions.par_chunks_mut(points))
-        .enumerate()
-        .with_min_len(BLOCKS)
-        .map(
-            |(
-                block,
-                (((((((room, predicted), velocities), previous), sections), spins), corrections), tensions),
-            )| {
-                room.space.store_tensions(tensions);
-                room.space.store(predicted, velocities, sections, spins);
-                room.space.store_remainders(corrections, time_step);
-                let hair = Block { positions: predicted, previous, velocities, corrections };
-                (recover(model, &obstacles.end, block, hair), room.space.report)
-            },
-        )
-        .reduce(Default::default, |one, other| (one.0.with(other.0), one.1.with(other.1)))
-}
-
 impl Crowd {
-    fn fit(&mut self, places: usize, points: usize) {
+    /// Makes room for strands of a number of points.
+    pub(super) fn fit(&mut self, places: usize, points: usize) {
         if self.points != points || self.start.len() != places {
             *self = Self {
                 rooms: (0..places / points).map(|_| Room::new(points)).collect(),
@@ -119,7 +52,8 @@ impl Crowd {
         }
     }
 
-    fn part(&mut self, hair: &Hair, planes: &mut [Vec<Plane>], pairs: &mut Vec<Pair>, part: u32) {
+    /// Takes the strands through a part of a step.
+    pub(super) fn part(&mut self, hair: &Hair, planes: &mut [Vec<Plane>], pairs: &mut Vec<Pair>, part: u32) {
         let points = self.points;
         let starts = self.start.par_chunks_mut(points).zip(self.coast.par_chunks_mut(points));
         self.rooms

@@ -4,7 +4,7 @@ use glam::Vec3;
 use strandline_base::par::prelude::*;
 use strandline_groom::{LANES, Vec3Lanes};
 
-use super::solve_rods::Hair;
+use super::rod_strands::Hair;
 use crate::wisps::boxes::{Around, Boxes};
 use crate::wisps::pair::{Near, Pair};
 use crate::wisps::place::{Ends, look};

@@ -5,7 +5,7 @@ use strandline_body::{BodyFrame, Pose};
 use strandline_groom::LANES;
 use wide::f32x8;
 
-use super::integrate::Fall;
+use super::fall::Fall;
 use super::rod_air::Air;
 use crate::Model;
 use crate::contact::Obstacles;

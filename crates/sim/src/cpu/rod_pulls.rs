@@ -4,7 +4,7 @@ use glam::Vec3;
 use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
-use super::solve_rods::Strands;
+use super::rod_strands::Strands;
 use crate::contact::contacts::{Care, Query};
 use crate::contact::planes::Plane;
 use crate::grab::Pinned;

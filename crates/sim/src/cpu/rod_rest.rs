@@ -3,7 +3,7 @@
 use wide::f32x8;
 
 use super::rod_parts::Parts;
-use super::solve_rods::Strands;
+use super::rod_strands::Strands;
 use crate::strands::rods::real::Real;
 use crate::strands::rods::workspace::Workspace;
 

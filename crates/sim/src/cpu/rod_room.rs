@@ -4,7 +4,7 @@ use glam::Vec3;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use super::solve_rods::Hair;
+use super::rod_strands::Hair;
 use crate::contact::planes::Plane;
 use crate::grab::Pinned;
 use crate::strands::rods::real::{Real, Vector};

@@ -37,7 +37,7 @@ struct Range {
 /// Boxes sorted by buckets of cells, and the room for it.
 #[derive(Clone, Debug, Default)]
 pub struct Boxes {
-    /// Where the boxes of each bucket begin.
+    /// First box of each bucket.
     starts: Vec<u32>,
     /// Indices of boxes, bucket after bucket, rising.
     order: Vec<u32>,
@@ -158,7 +158,7 @@ mod tests {
             .map(|segment| {
                 let mut vector = |size: f32| Vec3::new(random.unit(), random.unit(), random.unit()) * size;
                 let low = vector(1.0) - Vec3::splat(0.5);
-                let side = if segment % 50 == 0 { 0.3 } else { 0.06 };
+                let side = if segment % 50 == 0 { 0.4 } else { 0.12 };
                 Around { low, high: low + vector(side), segment, strand: segment / 10 }
             })
             .collect();

@@ -10,8 +10,6 @@ const NO_DIRECTION: f32 = 0.2;
 const LOOKS: usize = 5;
 /// Distance over that of touching within which a pair that does not approach is looked at in a part.
 const NEAR: f32 = 1.15;
-/// Depth over the distance of touching from which a pair that crossed is let go.
-const PASSED: f32 = 1.0;
 /// Distance over that of touching beyond which no pair has a memory.
 const REMEMBERED: f32 = 2.0;
 
@@ -51,8 +49,6 @@ pub struct Place {
     pub normal: Vec3,
     /// Distance \[m\] along the normal where the part begins.
     pub gap: f32,
-    /// True where the axes have crossed.
-    pub crossed: bool,
 }
 
 /// Place where two segments touch, or may come to touch within a part of a step, at a distance `touch` \[m\] of their
@@ -68,14 +64,13 @@ pub fn look(start: &Ends, ways: &Ends, touch: f32, side: impl FnOnce() -> Option
     if distance < REMEMBERED * touch
         && let Some(side) = side()
     {
-        let crossed = vector.dot(side) < 0.0;
-        let gap = if crossed { -distance } else { distance };
-        if gap < (1.0 - PASSED) * touch {
+        // Forces of pairs that have crossed feed a tangle: they are let go.
+        if vector.dot(side) < 0.0 {
             return None;
         }
-        if gap < touch {
+        if distance < touch {
             let normal = oriented(start, vector, distance, touch, side);
-            return Some(Place { shares, normal, gap: normal.dot(vector), crossed });
+            return Some(Place { shares, normal, gap: normal.dot(vector) });
         }
     }
     ahead(start, ways, touch, shares, distance)
@@ -106,7 +101,7 @@ fn ahead(start: &Ends, ways: &Ends, touch: f32, shares: [f32; 2], distance: f32)
         return None;
     }
     let normal = if distance > 1e-9 { vector / distance } else { crosswise(start).unwrap_or(Vec3::X) };
-    Some(Place { shares, normal, gap: normal.dot(between(start, shares)), crossed: false })
+    Some(Place { shares, normal, gap: normal.dot(between(start, shares)) })
 }
 
 /// The normal of a pair that touches, on its side.
@@ -144,11 +139,11 @@ mod tests {
     }
 
     #[test]
-    fn a_pair_remembers_its_side_until_it_is_far_beyond() {
+    fn a_pair_remembers_its_side_and_is_let_go_beyond() {
         let still = [Vec3::ZERO; 4];
-        let place = look(&ends(-0.05), &still, 0.1, || Some(Vec3::Y)).unwrap();
-        assert!(place.crossed && place.normal.y > 0.99 && (place.gap + 0.05).abs() < 1e-6, "{place:?}");
-        assert!(look(&ends(-0.15), &still, 0.1, || Some(Vec3::Y)).is_none());
+        let place = look(&ends(0.05), &still, 0.1, || Some(Vec3::Y)).unwrap();
+        assert!(place.normal.y > 0.99 && (place.gap - 0.05).abs() < 1e-6, "{place:?}");
+        assert!(look(&ends(-0.05), &still, 0.1, || Some(Vec3::Y)).is_none());
         let place = look(&ends(-0.05), &still, 0.1, || None).unwrap();
         assert!(place.normal.y < -0.99);
     }

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::{
-    Bookmark, Executor, Live, Session, Task, job::Job, kept::Held, moment::Moment, simulation::with_hairs,
+    Bookmark, Executor, Live, Session, Task, air_hairs::with_hairs, job::Job, kept::Held, moment::Moment,
 };
 use crate::{
     Error,

@@ -1,6 +1,7 @@
 //! A session: hair that moves and is drawn. Commands, which are data, go in; events come out. `Hair`, `Player` and
 //! `Live` are its faces.
 
+mod air_hairs;
 mod asking;
 mod bookmark;
 mod change;

@@ -7,8 +7,8 @@ use strandline_base::{Group, par::Pool};
 use strandline_gpu::{Gpu, GpuError};
 
 use super::{
-    Inline, Session, Simulation, View, direction::Direction, engine::Engine, kept::Kept, moment::Moment,
-    simulation::with_hairs,
+    Inline, Session, Simulation, View, air_hairs::with_hairs, direction::Direction, engine::Engine,
+    kept::Kept, moment::Moment,
 };
 use crate::{
     BoundStrands, Devices, Error, Prepared, Scene,

@@ -7,6 +7,7 @@ use strandline_base::{SettingError, par::Pool};
 use strandline_gpu::Gpu;
 
 use super::{
+    air_hairs::with_hairs,
     engine::Engine,
     jump::jump,
     moment::{Moment, When},
@@ -20,21 +21,6 @@ use crate::{
     sim::{Clock, Drift, Drive, Measures, Settings, SimError, State, StepReport, Stiffening, Ticks},
     strands::hair_pose::HairPose,
 };
-
-/// Moves points by a way \[m\].
-fn move_lanes(points: &mut [Vec3Lanes], by: Vec3) {
-    if by != Vec3::ZERO {
-        points.iter_mut().for_each(|lanes| *lanes = lanes.moved(by));
-    }
-}
-
-/// Settings whose guides stand for a number of hairs in the air and in contacts unless they tell another.
-pub(super) fn with_hairs(settings: &Settings, hairs: Option<f32>) -> Settings {
-    let mut settings = settings.clone();
-    settings.drag.hairs = settings.drag.hairs.or(hairs);
-    settings.contact.hairs = settings.contact.hairs.or(hairs);
-    settings
-}
 
 /// Steps that settling hair makes in one run.
 const AT_ONCE: usize = 1024;
@@ -52,7 +38,7 @@ pub(crate) struct Simulation {
     /// Body at the last two states, and at the end of the last run.
     pub(super) bodies: [BodyFrame; 2],
     pub(super) end: BodyFrame,
-    /// What drove the last step.
+    /// Drive of the last step.
     last: Drive,
     /// Time \[s\] of all runs that went well.
     pub passed: f64,
@@ -190,7 +176,9 @@ impl Simulation {
         let origin = self.origin;
         self.engine.show(|places| {
             places.copy_from_slice(positions);
-            move_lanes(places, -origin);
+            if origin != Vec3::ZERO {
+                places.iter_mut().for_each(|lanes| *lanes = lanes.moved(-origin));
+            }
         })?;
         self.begin_at(self.skin.recognized(body.moved(-origin)));
         Ok(())
