@@ -187,6 +187,13 @@ impl ApplicationHandler for Program {
 fn main() -> Result<(), Box<dyn Error>> {
     let left = std::env::args().nth(1).map(|number| number.parse()).transpose()?;
     let mut program = Program { engine: None, failed: None, left };
-    EventLoop::new()?.run_app(&mut program)?;
+    let events = match EventLoop::new() {
+        Ok(events) => events,
+        Err(error) => {
+            println!("nothing is drawn without a display: {error}");
+            return Ok(());
+        }
+    };
+    events.run_app(&mut program)?;
     program.failed.map_or(Ok(()), Err)
 }

@@ -134,9 +134,10 @@ fn a_missing_entry_point_and_a_broken_text_are_found() {
     let wrong = Declaration { fragment: Some("hairs"), ..declaration("hair_vertex") };
     assert!(complaints(&wrong).contains("there is no such entry point"));
     let mut wrong = declaration("resolve_vertex");
-    wrong.bindings[1].layout = Layout::Scalar("u32");
+    let samples = wrong.bindings.iter().position(|binding| binding.name == "samples").unwrap();
+    wrong.bindings[samples].layout = Layout::Scalar("u32");
     assert!(complaints(&wrong).contains("samples is f32, declared u32"));
-    wrong.bindings[1].access = Access::Read;
+    wrong.bindings[samples].access = Access::Read;
     assert!(complaints(&wrong).contains("samples is Some(Texture), declared Read"));
     let wrong = Declaration { source: "fn broken( {", ..declaration("gather") };
     // The module and the place in it are named.

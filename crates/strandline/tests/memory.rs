@@ -34,7 +34,7 @@ static ALLOCATOR: Counted = Counted;
 
 fn scene() -> Scene {
     let mut scene = Scene::demo();
-    scene.style.strand_count = 60;
+    (scene.style.strand_count, scene.groom.bound) = (60, Some(0));
     scene.body.spacing = 0.02;
     scene.simulation.volume.cells = [12; 3];
     scene.devices.simulation = strandline::Backend::Cpu;

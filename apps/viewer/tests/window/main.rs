@@ -22,10 +22,10 @@ fn hair_is_grabbed_where_the_button_was_pressed_and_follows_though_nothing_plays
     window.settle();
     window.press(egui::Key::G);
     let picture = window.picture();
-    // Brown on grey, in the lower half, where there is no skin behind it.
+    // Dark brown on grey, in the lower half, where there is no skin behind it, nor the outline of skin.
     let is_hair = |index: usize| {
         let pixel = &picture.pixels[3 * index..3 * index + 3];
-        pixel[0] < 150 && i16::from(pixel[0]) - i16::from(pixel[2]) > 20
+        pixel[0] < 75 && i16::from(pixel[0]) - i16::from(pixel[2]) > 15
     };
     let width = picture.width as usize;
     let hair =

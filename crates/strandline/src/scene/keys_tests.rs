@@ -39,8 +39,10 @@ fn every_key_takes_the_value_that_it_has() {
     for (key, row) in all() {
         let value = scene.get(&key).unwrap();
         // An absent value, and settings that bring others along or let hair begin at rest.
+        let rates = ["simulation.drag.across", "simulation.drag.along"];
         let brings = ["style.style", "groom.file", "body.file", "look.root_color", "look.tip_color"];
-        if value.is_empty() || matches!(row.kind, Kind::Group(_)) || brings.contains(&key.as_str()) {
+        let alone = !brings.contains(&key.as_str()) && !rates.contains(&key.as_str());
+        if value.is_empty() || matches!(row.kind, Kind::Group(_)) || !alone {
             continue;
         }
         let mut same = scene.clone();
