@@ -1,6 +1,7 @@
 //! Hair in an engine: the engine owns window, device and loop; the hair is drawn into a texture of the engine, which the
 //! engine puts on its screen. No call of the loop waits for the GPU. Pull the hair with the mouse.
 //! `cargo run --release -p strandline-viewer --example engine`; a number behind it ends it after so many pictures.
+#![allow(clippy::print_stdout)] // an example says what it does
 
 use std::{error::Error, sync::Arc};
 
