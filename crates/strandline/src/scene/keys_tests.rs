@@ -54,6 +54,20 @@ fn every_key_takes_the_value_that_it_has() {
 }
 
 #[test]
+fn a_rate_of_the_air_stands_for_its_force_unless_both_are_given() {
+    let factor = |text: &str| Scene::parse(text, "scene").unwrap().simulation.drag.factor;
+    assert_eq!(factor(""), 1.0);
+    assert_eq!(factor("simulation.drag.along = 3"), 0.0);
+    assert_eq!(factor("[simulation.drag]\nacross = 3\nfactor = 2"), 2.0);
+    let mut scene = Scene::default();
+    scene.set("simulation.drag.across", "3").unwrap();
+    assert_eq!((scene.simulation.drag.across, scene.simulation.drag.factor), (3.0, 0.0));
+    scene.set("simulation.drag.factor", "1").unwrap();
+    // What is written holds both.
+    assert_eq!(Scene::parse(&scene.to_toml(), "scene").unwrap().simulation, scene.simulation);
+}
+
+#[test]
 fn every_number_outside_its_range_is_refused_with_key_and_range() {
     for (key, row) in all() {
         let (Some([least, most]), true) =
