@@ -63,7 +63,7 @@ fn a_rate_of_the_air_stands_for_its_force_unless_both_are_given() {
     scene.set("simulation.drag.across", "3").unwrap();
     assert_eq!((scene.simulation.drag.across, scene.simulation.drag.factor), (3.0, 0.0));
     scene.set("simulation.drag.factor", "1").unwrap();
-    // What is written holds both.
+    // A written scene holds both.
     assert_eq!(Scene::parse(&scene.to_toml(), "scene").unwrap().simulation, scene.simulation);
 }
 
