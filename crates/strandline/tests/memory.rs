@@ -40,6 +40,8 @@ fn scene() -> Scene {
     scene.devices.simulation = strandline::Backend::Cpu;
     scene.devices.pictures = strandline::Backend::Cpu;
     (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 10.0);
+    // Scattered light costs as much for few strands as for many.
+    scene.look.dress(strandline::look::Preset::Thesis);
     (scene.picture.width, scene.picture.height) = (64, 48);
     scene.look.shadow.map_size = 128;
     scene

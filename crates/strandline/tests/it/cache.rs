@@ -23,6 +23,8 @@ fn scene() -> Scene {
     scene.film.start = 0.5;
     scene.groom.length = 0.9;
     (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (2, 0, 10.0);
+    // Scattered light costs as much for few strands as for many.
+    scene.look.dress(strandline::look::Preset::Thesis);
     (scene.picture.width, scene.picture.height) = (64, 48);
     scene.devices = Backend::Cpu.into();
     scene

@@ -38,6 +38,8 @@ fn scene(place: Vec3) -> Scene {
     (scene.film.frames, scene.film.settle) = (5, 0.0);
     (scene.picture.width, scene.picture.height) = (64, 48);
     (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 10.0);
+    // Scattered light costs as much for few strands as for many.
+    scene.look.dress(strandline::look::Preset::Thesis);
     scene.camera.position = Some(place + Vec3::new(0.0, 0.0, 0.75));
     scene.camera.target = Some(place);
     scene.lights = strandline::Look::brown().lights(Vec3::ZERO);

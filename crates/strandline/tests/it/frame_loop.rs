@@ -9,6 +9,8 @@ fn opened() -> FrameLoop {
     // A hand holds guides: of so few none may lie near a drawn strand.
     scene.groom.bound = Some(0);
     (scene.picture.width, scene.picture.height) = (48, 60);
+    // Scattered light costs as much for few strands as for many.
+    scene.look.dress(strandline::look::Preset::Thesis);
     FrameLoop::open(Prepared::new(&scene).unwrap(), Backend::Cpu).unwrap()
 }
 

@@ -23,6 +23,8 @@ fn scene(backend: Backend) -> Scene {
     (scene.devices.simulation, scene.devices.pictures) = (backend, Backend::Cpu);
     scene.groom.length = 0.8;
     (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 10.0);
+    // Scattered light costs as much for few strands as for many.
+    scene.look.dress(strandline::look::Preset::Thesis);
     (scene.picture.width, scene.picture.height) = (64, 48);
     scene
 }

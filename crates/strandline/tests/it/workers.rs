@@ -12,6 +12,8 @@ fn scene() -> Scene {
     scene.film.frames = 12;
     scene.film.settle = 0.05;
     (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 10.0);
+    // Scattered light costs as much for few strands as for many.
+    scene.look.dress(strandline::look::Preset::Thesis);
     (scene.picture.width, scene.picture.height) = (64, 48);
     scene
 }

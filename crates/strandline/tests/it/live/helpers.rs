@@ -15,6 +15,8 @@ pub fn scene() -> Scene {
     scene.simulation.volume.cells = [12; 3];
     scene.devices = Backend::Cpu.into();
     (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 10.0);
+    // Scattered light costs as much for few strands as for many.
+    scene.look.dress(strandline::look::Preset::Thesis);
     (scene.picture.width, scene.picture.height) = (64, 48);
     // Small pictures of all strands.
     scene.level_of_detail.by_pixel = false;
@@ -27,14 +29,17 @@ pub fn waking() -> impl Fn() + Send {
     move || here.unpark()
 }
 
-/// Waits for what is wanted, for at most a minute.
+/// Longest wait for one thing: twenty times what the slowest takes on two quiet cores.
+const PATIENCE: Duration = Duration::from_secs(180);
+
+/// Waits for what is wanted.
 pub fn wait<T>(mut look: impl FnMut() -> Option<T>) -> T {
     let begin = Instant::now();
     loop {
         if let Some(found) = look() {
             return found;
         }
-        let left = Duration::from_secs(60).checked_sub(begin.elapsed()).expect("nothing came");
+        let left = PATIENCE.checked_sub(begin.elapsed()).expect("nothing came");
         std::thread::park_timeout(left);
     }
 }
