@@ -88,7 +88,7 @@ fn depth_below(
 }
 
 law! {
-    fn no_hair_is_inside_a_ball_after_settling(on) {
+    long fn no_hair_is_inside_a_ball_after_settling(on) {
         let hair = ball_of_hair(400, 12, 0.25);
         let [rods, exact, loose] = ways();
         for motion in [Motion::Still, Motion::Shake] {
@@ -121,7 +121,7 @@ law! {
 }
 
 law! {
-    fn no_hair_is_inside_the_mannequin_after_settling(on) {
+    long fn no_hair_is_inside_the_mannequin_after_settling(on) {
         let settings = StyleSettings { strand_count: 300, ..StyleSettings::new(Style::Bob) };
         let hair = Guides::resample(&settings.grow().unwrap(), 16).unwrap();
         let shape = Shape::Mannequin(Mannequin::new());

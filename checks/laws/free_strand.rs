@@ -121,7 +121,7 @@ constrain.angles = Angles { limit: 0.1, stiffness: 100.0 };
 }
 
 law! {
-    fn springs_of_any_stiffness_stay_stable(on) {
+    long fn springs_of_any_stiffness_stay_stable(on) {
         let stiff = Spring { enabled: true, stiffness: 1e30, damping: 1e30 };
         let settings =
             bare(1.0 / 60.0, 20).with_constrain(|constrain| constrain.springs = Springs { stretch: stiff, bend: stiff, torsion: stiff });

@@ -27,7 +27,7 @@ fn carry(rig: &mut Rig, place: Vec3, steps: usize) {
 }
 
 law! {
-    fn a_rope_held_by_a_hand_hangs_in_a_catenary(on) {
+    long fn a_rope_held_by_a_hand_hangs_in_a_catenary(on) {
         // Sag over length of 16 links that end 0.6 and 0.8 lengths apart: reference/catenary.csv.
         let settings = Settings { damping: 4.0, ..bare(1.0 / 600.0, 200) };
         for (span, sag) in [(0.6, 0.363_835_1), (0.8, 0.265_991_5)].into_iter().take(on.either(2, 1)) {

@@ -77,7 +77,7 @@ fn lowered(on: &On, ball: &Ball, colliders: Vec<Collider>, settings: &Settings) 
 }
 
 law! {
-    fn hair_that_leaves_the_box_of_a_grid_and_comes_back_stays_outside(on) {
+    long fn hair_that_leaves_the_box_of_a_grid_and_comes_back_stays_outside(on) {
         let ball = Ball { center: Vec3::NEG_Y * 0.75, radius: 0.1 };
         let mut settings = Settings::constrained();
         settings.volume.enabled = false;
@@ -176,7 +176,7 @@ fn shaken(on: &On, collider: Collider, settings: &Settings) -> f32 {
 }
 
 law! {
-    fn a_violent_shake_takes_no_hair_into_the_head(on) {
+    long fn a_violent_shake_takes_no_hair_into_the_head(on) {
         let ball = Ball { center: Vec3::ZERO, radius: 0.1 };
         let shape = Shape::Sphere { center: Vec3::ZERO, radius: 0.1 };
         let exact = Collider { shape, carrier: Carrier::HEAD, friction: 0.3 };

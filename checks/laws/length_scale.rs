@@ -65,7 +65,7 @@ law! {
 }
 
 law! {
-    fn a_strand_hangs_as_far_down_as_it_is_long(on) {
+    long fn a_strand_hangs_as_far_down_as_it_is_long(on) {
         // A software adapter has the shortest and the longest.
         for scale in [0.3, 1.0, 2.0].into_iter().step_by(on.either(1, 2)) {
             let guides = one_strand(&line(Vec3::ZERO, Vec3::NEG_Y * 0.2, POINTS - 1));

@@ -82,7 +82,7 @@ fn apart(one: &State, other: &State, points: usize) -> [f32; 3] {
 }
 
 law! {
-    fn the_volume_does_not_move_resting_hair(on) {
+    long fn the_volume_does_not_move_resting_hair(on) {
         for hair in HAIR.into_iter().take(on.either(2, 1)) {
             let [mut with, mut without] = [true, false].map(|volume| head(on, 64, hair, &Settings::constrained(), volume));
             without.steps(&vec![Drive::default(); 900]);

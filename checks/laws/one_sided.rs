@@ -15,7 +15,7 @@ fn bits(state: &State) -> Vec<[u32; 3]> {
 }
 
 law! {
-    fn wisps_that_part_or_slide_past_each_other_do_not_feel_it(on) {
+    long fn wisps_that_part_or_slide_past_each_other_do_not_feel_it(on) {
         for way in [Vec3::NEG_X, Vec3::Y] {
             let [with, without] =
                 [Some(VolumeMethod::OneSided), None].map(|method| bits(&wisps(on, method, way)));

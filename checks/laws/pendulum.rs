@@ -182,7 +182,7 @@ fn sag_error(on: &On, span: f32, sag: f32, settings: &Settings) -> f32 {
 const SAGS: [(f32, f32); 4] = [(0.4, 0.429_992_3), (0.6, 0.363_835_1), (0.8, 0.265_991_5), (0.9, 0.191_079)];
 
 law! {
-    fn a_rope_held_at_both_ends_hangs_in_a_catenary(on) {
+    long fn a_rope_held_at_both_ends_hangs_in_a_catenary(on) {
         let settings = Settings { damping: 4.0, ..bare(1.0 / 600.0, 200) };
         // A software adapter takes its time: the first and the last.
         for (span, sag) in SAGS.into_iter().step_by(on.either(1, 3)) {

@@ -307,7 +307,7 @@ fn out_of_plane(on: &On, curvature: f32) -> f32 {
 }
 
 law! {
-    fn a_curved_rod_leaves_its_plane_at_the_known_curvature(on) {
+    long fn a_curved_rod_leaves_its_plane_at_the_known_curvature(on) {
         // reference/bend_twist_threshold.csv: Poisson's ratio 0.5, L = 5 (B/w)^(1/3).
         let critical = 8.104_014;
         let below = out_of_plane(on, 0.95 * critical);
@@ -365,7 +365,7 @@ law! {
 }
 
 law! {
-    fn a_rod_shaken_at_twenty_g_stays_whole(on) {
+    long fn a_rod_shaken_at_twenty_g_stays_whole(on) {
         let mut settings = rods(1.0 / 60.0);
         settings.drag = strandline_sim::Drag::default();
         let mut rig = Rig::new(on, Model::new(&curl(), &settings, Vec::new()).unwrap());

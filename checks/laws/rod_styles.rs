@@ -54,7 +54,7 @@ const APART: f32 = 2e-2;
 const APART_ON_GPU: f32 = 3e-2;
 
 law! {
-    fn shaken_hair_comes_to_rest_where_it_was(on) {
+    long fn shaken_hair_comes_to_rest_where_it_was(on) {
         let styles = [Style::Wavy, Style::Long, Style::Bob, Style::Curly, Style::Pixie, Style::Ponytail];
         let shake = |time: f64| Motion::Shake.pose(time.min(1.0), Vec3::new(0.0, -0.1, 0.0));
         let on_cpu = matches!(on, On::Cpu);

@@ -17,7 +17,7 @@ fn turned(rest: &State, now: &State, segment: usize) -> f32 {
 }
 
 law! {
-    fn a_shaft_twists_at_its_frequency(on) {
+    long fn a_shaft_twists_at_its_frequency(on) {
         let (length, count) = (0.1_f32, 32);
         let mut settings = Settings { gravity: Vec3::ZERO, ..rods(1e-3) };
         let material = &mut settings.strands.rods;

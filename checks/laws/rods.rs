@@ -86,7 +86,7 @@ pub fn stepped(on: &On, model: &Model, seconds: f32, motion: impl Fn(f64) -> Pos
 }
 
 law! {
-    fn a_style_stays_as_it_was_groomed(on) {
+    long fn a_style_stays_as_it_was_groomed(on) {
         let styles = [Style::Bob, Style::Wavy, Style::Curly, Style::Long, Style::Pixie, Style::Ponytail];
         for name in styles.into_iter().take(on.either(6, 3)) {
             for volume in [true, false].into_iter().take(on.either(2, 1)) {
@@ -136,7 +136,7 @@ law! {
 }
 
 law! {
-    fn hair_on_a_head_that_turned_and_came_back_is_as_it_was(on) {
+    long fn hair_on_a_head_that_turned_and_came_back_is_as_it_was(on) {
         // Once around and back, slowly; a software adapter takes a quarter of the way, with one style. Outside of
         // `cargo xtask long` the CPU has two, with the one that was farthest from where it was.
         let (turn, ends) = on.either((std::f32::consts::TAU, 8.0), (0.5 * std::f32::consts::PI, 2.0));

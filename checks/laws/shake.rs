@@ -41,7 +41,7 @@ fn shaken(on: &On, settings: &Settings) -> f32 {
 }
 
 law! {
-    fn a_minute_of_violent_shaking_stays_bounded(on) {
+    long fn a_minute_of_violent_shaking_stays_bounded(on) {
         // The head itself moves at up to 6.25 m/s; the mean over all hair is no faster than half as much again,
         // though a tip may be. 4.5 and 6.0 m/s were seen.
         let bound = (1.5 * 6.25_f32).powi(2);
@@ -123,7 +123,7 @@ fn restless(on: &On, wind: Vec3, steps: usize) -> f32 {
 }
 
 law! {
-    fn hair_on_a_resting_head_comes_to_rest(on) {
+    long fn hair_on_a_resting_head_comes_to_rest(on) {
         // 10 um in a step, 0.6 mm/s, is less than a tenth of a pixel of a head that fills the picture.
         let way = restless(on, Vec3::ZERO, on.either(600, 300));
         assert!(way < 1e-5, "{way} m");

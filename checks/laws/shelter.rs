@@ -83,7 +83,7 @@ fn hanging(on: &On, ball: bool) -> f32 {
 }
 
 law! {
-    fn tips_hang_behind_a_head(on) {
+    long fn tips_hang_behind_a_head(on) {
         let (free, behind) = (hanging(on, false), hanging(on, true));
         assert!(free > 60.0 && behind.abs() < 5.0, "{behind} degrees behind a ball, {free} without it");
     }

@@ -51,7 +51,7 @@ fn the_groom_of_sintel_is_put_outside_her_head() {
 }
 
 law! {
-    fn sintels_hair_stays_out_of_her_head(on) {
+    long fn sintels_hair_stays_out_of_her_head(on) {
         let Some(prepared) = sintel() else { return };
         let speed = 2.0 * PI * 5.0;
         let amplitude = 20.0 * 9.81 / (speed * speed);
@@ -82,7 +82,7 @@ fn drift_at_rest(on: &On, prepared: &Prepared, volume: bool) -> (f32, f32) {
 }
 
 law! {
-    fn sintels_hair_stays_as_it_was_groomed(on) {
+    long fn sintels_hair_stays_as_it_was_groomed(on) {
         let Some(prepared) = sintel() else { return };
         // The bounds of the law. Found: 0.003 % on the CPU, 0.03 % on a GPU, at rest within a second; 19 % where planes
         // were those of the places that points would fall to.
@@ -94,7 +94,7 @@ law! {
 }
 
 law! {
-    fn a_ponytail_stays_as_it_was_groomed(on) {
+    long fn a_ponytail_stays_as_it_was_groomed(on) {
         let Some(prepared) = strandline_checks::ponytail(|scene| scene.groom.guide_every = 8) else { return };
         // The law asks for 0.1 % without a volume and 1 % with one. Found on the CPU: 0.002 % with and without. On a GPU
         // without a volume it is not met: a strand that is folded by 137 degrees at a joint moves by 1.0 %, with one by

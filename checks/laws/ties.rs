@@ -82,7 +82,7 @@ fn a_tied_tail_swings_as_it_does_without_a_volume() {
 }
 
 law! {
-    fn nothing_leaves_a_tie(on) {
+    long fn nothing_leaves_a_tie(on) {
         // To and fro along x at 3 g and 2 Hz for two seconds, then six seconds of rest.
         let (frequency, most) = (2.0, 3.0 * 9.81);
         let omega = std::f64::consts::TAU * frequency;

@@ -60,9 +60,22 @@ const REQUIRED: &str = "STRANDLINE_REQUIRE_GROOMS";
 /// # Panics
 /// Data is required.
 fn not_tested(why: &str, required: Option<&OsStr>) {
-    let thread = std::thread::current();
-    let line = format!("NOT TESTED: {}: {why}\n", thread.name().unwrap_or("a test"));
+    let line = line(why);
     assert!(required.is_none(), "{REQUIRED} is set, but {line}");
+    print(&line);
+}
+
+/// Prints a line to stderr that the running test is one of `cargo xtask long` on this adapter.
+pub fn left_to_long() {
+    print(&line("a software adapter takes long: `cargo xtask long laws`"));
+}
+
+fn line(why: &str) -> String {
+    let thread = std::thread::current();
+    format!("NOT TESTED: {}: {why}\n", thread.name().unwrap_or("a test"))
+}
+
+fn print(line: &str) {
     // A closed stderr leaves no place for the note.
     std::io::Write::write_all(&mut std::io::stderr(), line.as_bytes()).ok();
 }

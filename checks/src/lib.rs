@@ -22,6 +22,20 @@ pub fn gpu() -> Option<Gpu> {
     SHARED.get_or_init(open).clone()
 }
 
+/// As [`gpu`], for checks that take a software adapter long: it is theirs where [`in_full`] says so, and a line tells that
+/// they were left out where not. What holds on the CPU and stage by stage holds there too: these are laws of whole scenes.
+///
+/// # Panics
+/// As [`gpu`].
+pub fn gpu_in_full() -> Option<Gpu> {
+    let found = gpu()?;
+    if found.adapter().software && !in_full() {
+        grooms::left_to_long();
+        return None;
+    }
+    Some(found)
+}
+
 /// As [`gpu`], with a device of its own: for checks that spoil it.
 ///
 /// # Panics

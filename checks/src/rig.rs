@@ -115,10 +115,17 @@ impl Rig {
     }
 }
 
-/// Makes a test for each backend of a law: `law! { fn name(on) { ... } }`, where `on` is an [`On`].
+/// Makes a test for each backend of a law: `law! { fn name(on) { ... } }`, where `on` is an [`On`]. One that takes a software
+/// adapter long is left to `cargo xtask long` there: `law! { long fn name(on) { ... } }`.
 #[macro_export]
 macro_rules! law {
     ($(#[$attribute:meta])* fn $name:ident($on:ident) $body:block) => {
+        $crate::law! { @ $crate::gpu, $(#[$attribute])* fn $name($on) $body }
+    };
+    ($(#[$attribute:meta])* long fn $name:ident($on:ident) $body:block) => {
+        $crate::law! { @ $crate::gpu_in_full, $(#[$attribute])* fn $name($on) $body }
+    };
+    (@ $gpu:path, $(#[$attribute:meta])* fn $name:ident($on:ident) $body:block) => {
         $(#[$attribute])*
         mod $name {
             #[allow(unused_imports)]
@@ -133,7 +140,7 @@ macro_rules! law {
 
             #[test]
             fn gpu() {
-                if let Some(gpu) = $crate::gpu() {
+                if let Some(gpu) = $gpu() {
                     law(&$crate::On::Gpu(gpu));
                 }
             }
