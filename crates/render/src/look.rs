@@ -155,6 +155,9 @@ settings! {
         body_bias: f32 = 0.004, in [0.0, 1.0] "m", slider [0.0, 0.02], more "fewer false shadows on the body";
         /// Depth over which that shadow grows to its full.
         body_softness: f32 = 0.008, in [1e-6, 1.0] "m", slider [0.001, 0.05], more "softer shadows of the body";
+        /// Rays from a place of skin at the edge of a shadow to a light with an area, shared out among its samples: each
+        /// gets one at least.
+        rays: u32 = 64, in [1, 256], slider [8, 128], more "smoother shadows on skin, at a cost in time";
         plain {
             /// True if a hair hides everything behind it, for any `opacity`.
             solid: bool,
@@ -164,6 +167,11 @@ settings! {
 }
 
 impl Shadow {
+    /// Rays to each of so many samples of a light.
+    pub(crate) fn rays_of(&self, samples: usize) -> usize {
+        (self.rays as usize / samples).max(1)
+    }
+
     /// Logarithm of the share of light that one hair lets through.
     pub(crate) fn log_transmission(&self) -> f32 {
         if self.solid { -1.0 } else { math::ln(1.0 - self.opacity) }

@@ -12,14 +12,17 @@ use crate::{Material, Materials, Mesh};
 
 /// Balls \[m\] within which the skin is drawn with finer triangles: centre on the side of positive x, radius, and how
 /// many times its edges are split.
-const FINE: [(Vec3, f32, u32); 5] = [
-    // Eyes and brows, nose, mouth, ears.
-    (Vec3::new(0.0310, -0.0165, 0.0780), 0.0190, 2),
-    (Vec3::new(0.0320, 0.0025, 0.0860), 0.0245, 2),
-    (Vec3::new(0.0000, -0.0500, 0.1030), 0.0240, 2),
-    (Vec3::new(0.0000, -0.0780, 0.0950), 0.0310, 2),
-    (Vec3::new(0.0850, -0.0340, -0.0100), 0.0400, 1),
+const FINE: [(Vec3, f32, u32); 6] = [
+    // The head; eyes and brows, nose, mouth, ears.
+    (Vec3::new(0.0000, -0.0100, 0.0100), 0.1300, 1),
+    (Vec3::new(0.0310, -0.0165, 0.0780), 0.0190, 3),
+    (Vec3::new(0.0320, 0.0025, 0.0860), 0.0245, 3),
+    (Vec3::new(0.0000, -0.0500, 0.1030), 0.0240, 3),
+    (Vec3::new(0.0000, -0.0780, 0.0950), 0.0310, 3),
+    (Vec3::new(0.0850, -0.0340, -0.0100), 0.0400, 2),
 ];
+/// Rounds in which edges are split, the margins of the lids in the last one too.
+const ROUNDS: u32 = 4;
 /// The skin is finest this near \[m\] to the margins of the lids.
 const FINEST: f32 = 0.0015;
 /// Roughness of the wet eye.
@@ -32,7 +35,7 @@ impl Mannequin {
     /// Materials: `skin` has no colour of its own, `eyes` have. Coordinates are those of [`crate::Root::uv`], v down.
     pub fn figure(&self) -> Mesh {
         let mut mesh = self.mesh();
-        for round in 0..=2 {
+        for round in 0..ROUNDS {
             self.refine(&mut mesh, round);
         }
         let colors: Vec<Vec4> = mesh
@@ -82,7 +85,7 @@ impl Mannequin {
             let eye = &self.shape.eye;
             let is_margin =
                 || half.distance(eye.center) < 1.5 * eye.radius && eye.opening(half).0.abs() < FINEST;
-            (round == 2 && is_margin())
+            (round + 1 == ROUNDS && is_margin())
                 || FINE
                     .iter()
                     .any(|(center, radius, times)| round < *times && half.distance(*center) < *radius)

@@ -7,7 +7,7 @@ use super::model::Mannequin;
 use crate::{Mesh, SignedDistance};
 
 /// Spacing of the samples \[m\].
-const SPACING: f32 = 0.0022;
+const SPACING: f32 = 0.0044;
 /// Newton steps that carry the vertices onto the skin.
 const NEWTON_STEPS: usize = 4;
 /// No step is longer \[m\], so that a vertex in a crease stays there.

@@ -202,7 +202,8 @@ mirror! {
         pub places: u32,
         /// Area of that part \[m^2\].
         pub area: f32,
-        pub unused_too: u32,
+        /// Rays of a place of skin to each.
+        pub rays: u32,
         pub unused_last: u32,
     }
 }
@@ -342,7 +343,7 @@ impl LightSource {
                 },
                 places: light.sample_count() as u32,
                 area: light.part_area(),
-                unused_too: 0,
+                rays: scene.input.look.shadow.rays_of(light.sample_count()) as u32,
                 unused_last: 0,
             };
             if light.shadow {

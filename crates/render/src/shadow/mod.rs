@@ -1,6 +1,7 @@
 //! Deep opacity maps \[Yuksel2008\]: what a light sees of hair and body, and how much of it reaches a point.
 
 pub(crate) mod light_view;
+mod nearest;
 mod picture;
 
 pub(crate) use light_view::{LightView, Window, stepped_down};
@@ -8,6 +9,7 @@ pub(crate) use light_view::{LightView, Window, stepped_down};
 use glam::{Vec2, Vec3, Vec4};
 use strandline_base::par::{self, prelude::*};
 
+use self::nearest::Nearest;
 use crate::Shadow;
 use crate::fast_math::exp;
 use crate::lanes::split_texel;
@@ -35,6 +37,10 @@ pub struct ShadowMap {
     pub(crate) depths: Vec<f32>,
     /// Depth \[m\] of the body.
     pub(crate) body_depths: Vec<f32>,
+    /// Of the first hair.
+    pub(crate) nearest_hair: Nearest,
+    /// Of the body.
+    pub(crate) nearest_body: Nearest,
     /// Into how many parts the strands are shared out.
     pub(crate) parts: usize,
     /// Depths of all parts but the first.
@@ -51,6 +57,8 @@ pub struct ShadowMap {
     log_transmission: f32,
     pub(crate) body_bias: f32,
     pub(crate) inverse_softness: f32,
+    /// Of which the rays of a place of skin are taken.
+    pub(crate) settings: Shadow,
     /// True if a hair hides everything behind it.
     pub(crate) solid: bool,
 }
@@ -58,6 +66,7 @@ pub struct ShadowMap {
 impl ShadowMap {
     pub(crate) fn set(&mut self, settings: &Shadow) {
         let [first, second, third] = settings.layers;
+        self.settings = *settings;
         self.size = settings.map_size as usize;
         self.starts = Vec4::new(0.0, first, second, 0.0);
         self.inverse_thicknesses =
@@ -170,14 +179,25 @@ impl ShadowMap {
     /// The first of the four texels whose middles surround texel coordinates, and the weights of the four.
     #[inline]
     pub(crate) fn corners(&self, texel: Vec2) -> Option<(usize, [f32; 4])> {
+        let ([column, row], weights) = self.place(texel)?;
+        Some((row * self.size + column, weights))
+    }
+
+    /// As [`ShadowMap::corners`], with the first texel's column and row.
+    #[inline]
+    pub(crate) fn place(&self, texel: Vec2) -> Option<([usize; 2], [f32; 4])> {
         let texel = texel - Vec2::splat(0.5);
         let limit = self.size as f32 - 1.0;
         if !(texel.x >= 0.0 && texel.y >= 0.0 && texel.x < limit && texel.y < limit) {
             return None;
         }
-        let ([column, row], Vec2 { x, y }) = split_texel(texel);
-        let weights = [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y];
-        Some((row * self.size + column, weights))
+        let (first, Vec2 { x, y }) = split_texel(texel);
+        Some((first, [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y]))
+    }
+
+    #[inline]
+    pub(crate) fn quad_at(&self, [column, row]: [usize; 2]) -> [usize; 4] {
+        self.quad(row * self.size + column)
     }
 
     #[inline]

@@ -3,15 +3,15 @@
 use super::view::View;
 use crate::render::{LevelOfDetail, Light, PictureSettings};
 
-/// Limits of a simpler picture: segments of a strand, texels along a side of a shadow map, rounds and cells of scattered
+/// Limits of a simpler picture: texels along a side of a shadow map, rays from skin to a light, rounds and cells of scattered
 /// light. Each light has one sample point; the samples of a pixel stay, so that edges are smooth.
-const FEW_SEGMENTS: usize = 24;
 const SMALL_MAP: u32 = 192;
+const FEW_RAYS: u32 = 8;
 const FEW_SCATTERINGS: u32 = 2;
 const FEW_CELLS: u32 = 26;
-/// Widths and heights as shares of those of full pictures, and the most drawn strands of a guide: one after the other
-/// where one takes too long. Fewer strands save more than fewer pixels.
-const STEPS: [(f64, u32); 4] = [(0.5, 6), (0.5, 4), (0.4, 3), (0.33, 3)];
+/// Widths and heights as shares of those of full pictures, the most drawn strands of a guide, and the most segments of a
+/// strand: one after the other where one takes too long. Fewer strands save more than fewer pixels.
+const STEPS: [(f64, u32, usize); 4] = [(0.5, 6, 24), (0.5, 4, 24), (0.4, 3, 12), (0.33, 3, 12)];
 
 /// A simpler picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,8 +50,8 @@ impl Draft {
 pub(crate) fn simplified<T>(draft: Draft, view: &mut View, act: impl FnOnce(&mut View) -> T) -> T {
     let level = view.level_of_detail;
     let spans = view.painter.points_per_strand().saturating_sub(1).max(1);
-    let segments_per_span = level.segments_per_span.min(FEW_SEGMENTS.div_ceil(spans) as u32);
-    let most = STEPS[draft.step].1;
+    let (_, most, segments) = STEPS[draft.step];
+    let segments_per_span = level.segments_per_span.min(segments.div_ceil(spans) as u32);
     let own = view.painter.bound().map_or(1, |bound| {
         let guides = bound.binding().guides().strand_count();
         bound.strands().strand_count().div_ceil(guides.max(1)) as u32
@@ -66,6 +66,7 @@ pub(crate) fn simplified<T>(draft: Draft, view: &mut View, act: impl FnOnce(&mut
     let mut look = view.look.clone();
     look.follow_strands = look.follow_strands.min((most / own).max(1));
     look.shadow.map_size = look.shadow.map_size.min(SMALL_MAP);
+    look.shadow.rays = look.shadow.rays.min(FEW_RAYS);
     let scatterings = &mut look.fibre.chiang.scatterings;
     *scatterings = (*scatterings).min(FEW_SCATTERINGS);
     let cells = &mut look.fibre.chiang.cells;

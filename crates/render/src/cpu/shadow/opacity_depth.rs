@@ -50,6 +50,8 @@ fn body_depths(map: &mut ShadowMap, body: ShadowBody, middle: Vec3) {
     map.body_depths.clear();
     map.body_depths.resize(map.size * map.size, NOTHING);
     draw_depth(&body, &map.view, &map.body_window, map.size, &mut map.body_depths);
+    let depths = &map.body_depths;
+    map.nearest_body.take(map.size, |texel| depths[texel]);
 }
 
 fn hair_depths(map: &mut ShadowMap, strands: &Strands) {

@@ -92,6 +92,7 @@ fn merge(map: &mut ShadowMap) {
             *texel = Vec4::new(sum(0), sum(1), sum(2), depths[index]);
         }
     });
+    map.nearest_hair.take(size, |texel| depths[texel / size * stride(size) + texel % size]);
 }
 
 #[cfg(test)]

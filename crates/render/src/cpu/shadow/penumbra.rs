@@ -6,12 +6,11 @@
 //! layer. The share changes as smoothly as the maps do, since no blocker is searched for.
 
 use glam::{Vec2, Vec3};
+use wide::f32x4;
 
 use crate::fast_math::exp;
 use crate::shadow::{LightView, ShadowMap, Window};
 
-/// Rays to a light, shared out among its places.
-const RAYS: usize = 64;
 /// Steps of a ray.
 const STEPS: usize = 7;
 /// Distance \[m\] of the first step before the point; each further one lies twice as far.
@@ -43,11 +42,11 @@ struct Ray {
 }
 
 impl Ray {
-    /// A ray of a place, given as the place's number and the number of places.
+    /// A ray of so many to a place, given as the place's number and the number of places.
     #[inline]
-    fn new(ray: usize, [place, count]: [usize; 2]) -> Self {
+    fn new(ray: usize, rays: usize, [place, count]: [usize; 2]) -> Self {
         let part = |number: f32| number - number.floor();
-        let across = ((ray * count + place) as f32 + 0.5) / (RAYS / count * count) as f32;
+        let across = ((ray * count + place) as f32 + 0.5) / (rays * count) as f32;
         let along = part(ray as f32 * GOLDEN + place as f32 * PLASTIC);
         let stretch = 0.75 + 0.75 * part(ray as f32 * OTHER + place as f32 * GOLDEN);
         Self { end: Vec2::new(across, along) - 0.5, stretch }
@@ -130,36 +129,36 @@ impl ShadowMap {
         if plain && CORNERS[1..].iter().all(|&end| corner(end) == first) {
             return first;
         }
-        let count = RAYS / places[1];
-        (0..count).map(|ray| share(Ray::new(ray, places))).sum::<f32>() / count as f32
+        let rays = self.settings.rays_of(places[1]);
+        (0..rays).map(|ray| share(Ray::new(ray, rays, places))).sum::<f32>() / rays as f32
     }
 
     /// Share of a ray that the body lets through.
     #[inline]
     fn past_body(&self, way: &Way, ray: Ray) -> f32 {
+        let [bias, one] = [self.body_bias, 1.0].map(f32x4::splat);
+        let share = |reached: f32x4| reached.max(f32x4::ZERO).min(one);
+        // One over the distances before the point of the steps at both sides: it counts for the two that it lies between.
+        let mut inverse = 1.0 / ray.gap(0);
         let mut hidden = 0.0;
         for step in 0..STEPS {
-            let Some((first, weights)) = self.corners(way.at(&ray, step)) else { continue };
-            for (texel, weight) in self.quad(first).into_iter().zip(weights) {
-                let gap = way.depth - self.body_depths[texel];
-                if gap > self.body_bias {
-                    hidden += weight * self.hides(&ray, step, gap);
-                }
+            let (before, after) = (2.0 * inverse, inverse);
+            inverse *= 0.5;
+            let Some((first, weights)) = self.place(way.at(&ray, step)) else { continue };
+            if way.depth - self.nearest_body.about(first) <= self.body_bias {
+                continue;
             }
+            let depths = self.quad_at(first).map(|texel| self.body_depths[texel]);
+            let gap = f32x4::splat(way.depth) - f32x4::from(depths);
+            let reached = match step {
+                0 => (gap - bias) * f32x4::splat(self.inverse_softness),
+                _ => gap * f32x4::splat(before) - one,
+            };
+            let passed = if step + 1 < STEPS { gap * f32x4::splat(after) - one } else { f32x4::ZERO };
+            let hides = (share(reached) - share(passed)).max(f32x4::ZERO);
+            hidden += (gap.simd_gt(bias) & (hides * f32x4::from(weights))).reduce_add();
         }
         1.0 - hidden.min(1.0)
-    }
-
-    /// Share of a ray that the body hides at a step, where it lies so far \[m\] before the point: it counts for the two
-    /// steps that it lies between.
-    #[inline]
-    fn hides(&self, ray: &Ray, step: usize, gap: f32) -> f32 {
-        let reached = match step {
-            0 => (gap - self.body_bias) * self.inverse_softness,
-            _ => gap / ray.gap(step - 1) - 1.0,
-        };
-        let passed = if step + 1 < STEPS { gap / ray.gap(step) - 1.0 } else { 0.0 };
-        (reached.clamp(0.0, 1.0) - passed.clamp(0.0, 1.0)).max(0.0)
     }
 
     /// Share of a ray that the hair lets through.
@@ -167,9 +166,12 @@ impl ShadowMap {
     fn past_hair(&self, way: &Way, ray: Ray) -> f32 {
         let mut crossed = 0.0;
         for step in 0..STEPS {
-            let Some((first, weights)) = self.corners(way.at(&ray, step)) else { continue };
+            let Some((first, weights)) = self.place(way.at(&ray, step)) else { continue };
             let [near, far] = ray.slice(step);
-            for (texel, weight) in self.quad(first).into_iter().zip(weights) {
+            if self.nearest_hair.about(first) >= way.depth - near {
+                continue;
+            }
+            for (texel, weight) in self.quad_at(first).into_iter().zip(weights) {
                 if self.texels[texel].w < way.depth - near {
                     let behind = step + 1 < STEPS;
                     let before = if behind { self.crossed_in(texel, way.depth - far) } else { 0.0 };
