@@ -273,6 +273,15 @@ impl Group<'_> {
         Look { near: (load(&plane.distance) - moved).simd_le(reach), blocked: f32x8::from(blocked) }
     }
 
+    /// Depth \[m\] of a point in the solids, carrier space; the search on a skin begins at a triangle near it.
+    pub(super) fn deepest(&self, point: Vec3, triangle: u32) -> f32 {
+        let depth = |(collider, skin): &(&Collider, Option<&PosedSkin>)| match skin {
+            Some(skin) => skin.depth(point, triangle),
+            None => -collider.shape.distance(point),
+        };
+        self.colliders.iter().map(depth).fold(0.0, f32::max)
+    }
+
     /// The nearest solid, and a triangle of a skin for the next look. Points deeper in a skin than `most_depth` \[m\] are
     /// taken for that deep.
     pub(super) fn nearest(&self, point: Vec3, triangle: &Cell<u32>, most_depth: f32) -> Seen {
