@@ -32,6 +32,7 @@ mod shake;
 mod shelter;
 mod sintel;
 mod skin_contact;
+mod skin_depth;
 mod small_motion;
 mod spans;
 mod springs;

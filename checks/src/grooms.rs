@@ -22,6 +22,19 @@ pub fn ponytail(change: impl FnOnce(&mut Scene)) -> Option<Prepared> {
     groom(["ponytail/ponytail.tfxproj", "ponytail/ponytail_mesh.obj"], change)
 }
 
+/// The groom of a ponytail on a body of another file; else as [`sintel`].
+///
+/// # Panics
+/// The files are there and are not read, or they are missing and required.
+pub fn ponytail_on(body: PathBuf, change: impl FnOnce(&mut Scene)) -> Option<Prepared> {
+    let files = ["ponytail/ponytail.tfxproj"];
+    let hair = folder("STRANDLINE_GROOMS", "grooms", &files)?.join(files[0]);
+    let mut scene = Scene::default();
+    (scene.groom.file, scene.body.file) = (Some(hair), Some(body));
+    change(&mut scene);
+    Some(Prepared::new(&scene).unwrap())
+}
+
 /// Hair on a head, of the folder of grooms.
 fn groom(files: [&str; 2], change: impl FnOnce(&mut Scene)) -> Option<Prepared> {
     let folder = folder("STRANDLINE_GROOMS", "grooms", &files)?;

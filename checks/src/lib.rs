@@ -2,13 +2,15 @@
 
 #![forbid(unsafe_code)]
 
+mod depths;
 pub mod flip;
 mod grooms;
 mod rig;
 
 use std::sync::OnceLock;
 
-pub use grooms::{ponytail, reference, sintel};
+pub use depths::Depths;
+pub use grooms::{ponytail, ponytail_on, reference, sintel};
 pub use rig::{On, Rig, in_full};
 use strandline_gpu::Gpu;
 

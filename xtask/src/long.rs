@@ -10,7 +10,7 @@ use crate::cargo::{cargo_command, root};
 use crate::{adapter, bare, python, web};
 
 /// Long tests: an environment, and the words for cargo behind `test --workspace --test`.
-const TESTS: [((&str, &str), [&str; 2]); 8] = [
+const TESTS: [((&str, &str), [&str; 2]); 9] = [
     // Each command is ended as often as this, at random times.
     (("STRANDLINE_KILLS", "52"), ["reliability", "kills::"]),
     // Seconds of random clicks, keys and files.
@@ -22,6 +22,8 @@ const TESTS: [((&str, &str), [&str; 2]); 8] = [
     // Laws of whole scenes on a software adapter, which the short run leaves out there.
     (("STRANDLINE_FULL", "1"), ["laws", "gpu"]),
     (("STRANDLINE_FULL", "1"), ["laws", "rods::hair_on_a_head"]),
+    // Every third step of both clips on the CPU.
+    (("STRANDLINE_FULL", "1"), ["laws", "skin_depth::"]),
     // A minute of shaking on the CPU.
     (("STRANDLINE_FULL", "1"), ["laws", "shake::a_minute"]),
     // More styles on a software adapter, and steps down to 1/480 s.

@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::{Aabb, BodyError, DistanceGrid, Mannequin, SignedDistance, SkinSolid};
+use crate::{Aabb, BodyError, Caps, DistanceGrid, Mannequin, SignedDistance, SkinSolid};
 
 /// The carrier of a collider.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -114,6 +114,20 @@ impl Shape {
             Self::Skin(skin) => skin.grid().distance_at_least(point),
             Self::Mannequin(_) | Self::Sphere { .. } | Self::Capsule { .. } => self.distance(point).max(0.0),
         }
+    }
+
+    /// Planes that a part of a bust lies between.
+    pub fn caps(&self) -> Option<&Caps> {
+        match self {
+            Self::Grid(grid) => grid.caps(),
+            Self::Sphere { .. } | Self::Capsule { .. } | Self::Mannequin(_) | Self::Skin(_) => None,
+        }
+    }
+
+    /// True where the planes of the shape tell that it is no nearer to a point \[m\] than a distance \[m\].
+    #[inline]
+    pub fn is_beyond(&self, point: Vec3, distance: f32) -> bool {
+        self.caps().is_some_and(|caps| caps.beyond(point) >= distance)
     }
 
     /// Distance \[m\] that drawn strands keep from the shape.

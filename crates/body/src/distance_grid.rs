@@ -5,7 +5,7 @@ use glam::{UVec3, Vec3, Vec4};
 use strandline_base::par::prelude::*;
 
 use crate::lattice::Lattice;
-use crate::{Aabb, BodyError, Mesh, SignedDistance, mesh_distance};
+use crate::{Aabb, BodyError, Caps, Mesh, SignedDistance, mesh_distance};
 
 /// Most work that a mesh may be, and how much coarser a grid becomes while it is more: only triangles that
 /// cover the box around them many times are.
@@ -29,6 +29,8 @@ pub struct DistanceGrid {
     /// The least distance of the corners of the cell that begins at each node, not below 0, in quarters of a spacing,
     /// rounded down: interpolated distances in the cell are no less. It takes a sixteenth of the nodes' memory.
     least: Vec<u8>,
+    /// Planes that a part of a bust lies between.
+    caps: Option<Caps>,
 }
 
 /// Steps of [`DistanceGrid::least`] in a spacing.
@@ -121,7 +123,7 @@ impl DistanceGrid {
             *node = gradient.extend(distances[index]);
         });
         let least = least(&lattice, &distances);
-        Self { lattice, inverse_spacing, nodes, distances, least }
+        Self { lattice, inverse_spacing, nodes, distances, least, caps: None }
     }
 
     /// A part of the solid: at the nodes of this grid in a box, which holds the part with some air, the signed distance \[m\]
@@ -139,6 +141,16 @@ impl DistanceGrid {
             *distance = part(whole, lattice.position(node));
         });
         Self::from_distances(lattice, distances)
+    }
+
+    /// The same grid of a part that lies between planes.
+    pub(crate) fn with_caps(self, caps: Caps) -> Self {
+        Self { caps: Some(caps), ..self }
+    }
+
+    /// Planes that a part of a bust lies between.
+    pub fn caps(&self) -> Option<&Caps> {
+        self.caps.as_ref()
     }
 
     /// Distance of neighbouring nodes \[m\]: the requested one, or more.

@@ -10,6 +10,7 @@
 mod beside;
 mod buried;
 mod bvh;
+mod caps;
 mod closing;
 mod collider;
 mod curve;
@@ -67,6 +68,7 @@ mod vertex_file;
 mod vertex_frames;
 mod welding;
 
+pub use caps::Caps;
 pub use collider::{Carrier, Collider, Shape};
 pub use curve::{Curve, Interpolation, Key};
 pub use distance::{Aabb, SignedDistance};

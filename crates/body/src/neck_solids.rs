@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use crate::neck::{LEVELS, Neck, SLICES, SLOPE, level as level_of};
-use crate::{Aabb, Carrier, DistanceGrid};
+use crate::{Aabb, Caps, Carrier, DistanceGrid};
 
 /// Overlap \[m\] of neighbouring parts on either side.
 const OVERLAP: f32 = 0.006;
@@ -21,16 +21,27 @@ impl Neck {
     /// The solid parts of samples of the bust, each with its carrier: head, shoulders, and the neck between. At rest their
     /// union is the bust, to the bit about the head.
     pub fn solids(&self, bust: &DistanceGrid) -> Vec<(DistanceGrid, Carrier)> {
-        let steepness = Vec3::new(0.0, 1.0, SLOPE).length();
+        let steepness = Caps::steepness();
+        let cap = OVERLAP * steepness;
+        let whole = Caps {
+            levels: [f32::NEG_INFINITY, f32::INFINITY],
+            half_width: f32::INFINITY,
+            depths: [f32::NEG_INFINITY, f32::INFINITY],
+        };
         let [low, high] = LEVELS;
         let below = move |level: f32, point: Vec3| (level_of(point) - level) / steepness - OVERLAP;
         let above = move |level: f32, point: Vec3| (level - level_of(point)) / steepness - OVERLAP;
         let reach = OVERLAP * steepness + AIR;
         let all = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
         let torso = Aabb { max: Vec3::INFINITY.with_y(low - SLOPE * BACK_OF_BUST + reach), ..all };
+        let head = bust.within(all, |whole, point| capped(whole, above(high, point)));
+        let shoulders = bust.within(torso, |whole, point| capped(whole, below(low, point)));
         let mut parts = vec![
-            (bust.within(all, |whole, point| capped(whole, above(high, point))), Carrier::HEAD),
-            (bust.within(torso, |whole, point| capped(whole, below(low, point))), Carrier::Piece(1)),
+            (head.with_caps(Caps { levels: [high - cap, f32::INFINITY], ..whole }), Carrier::HEAD),
+            (
+                shoulders.with_caps(Caps { levels: [f32::NEG_INFINITY, low + cap], ..whole }),
+                Carrier::Piece(1),
+            ),
         ];
         let height = (high - low) / SLICES as f32;
         for slice in 0..SLICES {
@@ -39,9 +50,10 @@ impl Neck {
                 min: Vec3::new(-HALF_WIDTH - AIR, from - SLOPE * FRONT - reach, BACK - AIR),
                 max: Vec3::new(HALF_WIDTH + AIR, to - SLOPE * BACK + reach, FRONT + AIR),
             };
-            let cap = |point: Vec3| below(to, point).max(above(from, point)).max(point.x.abs() - HALF_WIDTH);
-            let part = bust.within(bounds, |whole, point| capped(whole, cap(point)));
-            parts.push((part, Carrier::Piece(slice as u16 + 2)));
+            let cut = |point: Vec3| below(to, point).max(above(from, point)).max(point.x.abs() - HALF_WIDTH);
+            let part = bust.within(bounds, |whole, point| capped(whole, cut(point)));
+            let caps = Caps { levels: [from - cap, to + cap], half_width: HALF_WIDTH, depths: [BACK, FRONT] };
+            parts.push((part.with_caps(caps), Carrier::Piece(slice as u16 + 2)));
         }
         parts
     }

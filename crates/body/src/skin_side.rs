@@ -4,7 +4,7 @@
 use glam::{DVec2, Vec3};
 
 use crate::PosedSkin;
-use crate::nearest_corner::Feature;
+use crate::nearest_corner::{Feature, nearest_on};
 use crate::posed_skin::DEPTH;
 use crate::skin_solid::NONE;
 
@@ -17,6 +17,18 @@ struct Ray {
 }
 
 impl PosedSkin {
+    /// Depth \[m\] of a point \[m\] at the end of the step, head space: 0 outside. Its side is exact, by the triangles that
+    /// a half line crosses, where [`Self::nearest`] has that of the faces about the nearest place. The search begins at a
+    /// triangle near the point.
+    pub fn depth(&self, point: Vec3, before: u32) -> f32 {
+        let found = self.near(point, before);
+        if found.distance >= 0.0 {
+            return 0.0;
+        }
+        let (place, _) = nearest_on(self.corners(&self.end, found.triangle), point);
+        if self.winds_around(point, point - place) { -found.distance } else { 0.0 }
+    }
+
     /// True for a point \[m\] behind a nearest place that lies outside all the same: some of the faces about an edge or a
     /// corner see it in front of them, and the skin does not wind around it. Points before their nearest place are left
     /// outside: where a limb passes through another, those within both would be thrown.

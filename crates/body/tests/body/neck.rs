@@ -156,6 +156,30 @@ fn parts_at_rest_are_the_bust() {
     assert!(same > 20_000);
 }
 
+/// The planes that cut a part out are never farther than the part, and tell of most of the bust that it is far.
+#[test]
+fn planes_of_parts_tell_no_more_than_their_distance() {
+    let (mut told, mut all) = (0, 0);
+    for (part, _) in neck().solids(&BUST) {
+        let caps = part.caps().unwrap();
+        for (index, place) in MESH.positions.iter().enumerate().step_by(3) {
+            let point = *place + MESH.normals[index] * (0.01 * (index % 7) as f32 - 0.02);
+            let (beyond, distance) = (caps.beyond(point), part.distance(point));
+            // Rounding of samples.
+            assert!(distance >= 0.0 || beyond <= 1e-5, "{point}: {beyond} beyond, {distance} deep");
+            // Beside the box of samples a distance is a lower bound.
+            let is_sampled = (point - point.clamp(part.bounds().min, part.bounds().max)) == Vec3::ZERO;
+            assert!(
+                !is_sampled || beyond <= distance.max(0.0) + 1e-5,
+                "{point}: {beyond} beyond, {distance}"
+            );
+            told += usize::from(beyond > 0.02);
+            all += 1;
+        }
+    }
+    assert!(2 * told > all, "{told} of {all}");
+}
+
 #[test]
 fn parts_are_near_the_bent_skin() {
     let parts = neck().solids(&BUST);

@@ -172,3 +172,36 @@ fn a_crease_that_crosses_itself_has_its_outside_outside() {
     assert!(at_vertex > 50, "{at_vertex} points");
     assert!(wrong.is_empty(), "{} of {at_vertex}: {:?}", wrong.len(), &wrong[..wrong.len().min(4)]);
 }
+
+#[test]
+fn depths_have_exact_sides_about_a_fold() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/bust.glb");
+    let (mesh, motion, _) = Mesh::load_moving(&path, "shrug").unwrap();
+    let solid = solid(&mesh, 0.01);
+    let skin: Arc<[Vec3]> = motion.positions(0.45).into();
+    let posed = PosedSkin::new(&solid, [None, Some(&skin)]).unwrap();
+    let deformed = Mesh::new(skin.to_vec(), mesh.triangles.clone()).unwrap().closed();
+    let (mut by_faces, mut inside, mut wrong) = (0, 0, Vec::new());
+    let ears = (0..skin.len()).filter(|index| mesh.positions[*index].x.abs() > 0.07);
+    let ears = ears.filter(|index| mesh.positions[*index].y > -0.1).step_by(3);
+    for (vertex, way) in
+        ears.map(|index| skin[index]).flat_map(|vertex| (0..26).map(move |way| (vertex, way)))
+    {
+        let step = vec3((way % 3) as f32, (way / 3 % 3) as f32, (way / 9) as f32) - 1.0;
+        let point = vertex + step.normalize_or(Vec3::ONE.normalize()) * (0.001 * (1 + way) as f32);
+        let (found, depth) =
+            (posed.nearest(point, PosedSkin::UNKNOWN), posed.depth(point, PosedSkin::UNKNOWN));
+        if found.distance > -1e-5 {
+            assert_eq!(depth, found.distance.min(0.0).abs() * f32::from(depth > 0.0), "{point}");
+            continue;
+        }
+        let is_inside = winding(&deformed, point) > 0.5;
+        by_faces += usize::from(!is_inside);
+        inside += usize::from(is_inside);
+        if is_inside != (depth > 0.0) || (is_inside && depth != -found.distance) {
+            wrong.push((vertex, way, found.distance, depth));
+        }
+    }
+    assert!(by_faces > 0 && inside > 500, "{by_faces} outside count as inside by their faces, {inside} are");
+    assert!(wrong.is_empty(), "{} wrong: {:?}", wrong.len(), &wrong[..wrong.len().min(4)]);
+}

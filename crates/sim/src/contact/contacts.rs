@@ -11,7 +11,7 @@
 use std::cell::Cell;
 
 use glam::Vec3;
-use strandline_body::{BodyFrame, Carrier, Collider, Pose, PosedSkin};
+use strandline_body::{BodyFrame, Caps, Carrier, Collider, Pose, PosedSkin};
 use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
@@ -79,6 +79,10 @@ pub(super) struct Group<'a> {
     colliders: Vec<(&'a Collider, Option<&'a PosedSkin>)>,
     /// The skin among them that moves by itself.
     skin: Option<&'a PosedSkin>,
+    /// Planes between which a part of the bust lies, where it is the only one.
+    caps: Option<Caps>,
+    /// Distance of two planes over the difference of their levels.
+    steep: f32,
     pub(super) carrier_from_world: Rigid,
     pub(super) world_from_carrier: Rigid,
     /// Carries what rests on the solid from the start to the end of the step.
@@ -97,6 +101,11 @@ impl<'a> Solids<'a> {
             let colliders: Vec<_> = solids.collect();
             Group {
                 skin: colliders.iter().find_map(|(_, skin)| *skin),
+                caps: match &colliders[..] {
+                    [(part, None)] => part.shape.caps().copied(),
+                    _ => None,
+                },
+                steep: 1.0 / Caps::steepness(),
                 colliders,
                 carrier_from_world: Rigid::new(&end.inverse()),
                 world_from_carrier: Rigid::new(&end),
@@ -145,6 +154,9 @@ impl<'a> Solids<'a> {
         let mut touch: Option<Touch> = None;
         let (planes, riders) = planes.split_at_mut(self.groups.len() * self.points);
         for (group, planes) in self.groups.iter().zip(planes.chunks_mut(self.points)) {
+            if group.is_beyond(position, start, margin + splat(care.near)) {
+                continue;
+            }
             let plane = &mut planes[point];
             let mut rider = riders.get_mut(point).filter(|_| group.skin.is_some());
             let carried = start.map(|start| group.end_from_start.points(start));
@@ -197,6 +209,9 @@ impl<'a> Solids<'a> {
                 deepest = deepest.max(group.depth_on(position, plane, rider, &counted));
                 continue;
             }
+            if group.is_beyond(position, None, splat(0.0)) {
+                continue;
+            }
             let mut local = Vec3Lanes::default();
             group.carrier_from_world.points(position).store(&mut local);
             for point in (0..LANES).filter(|lane| counted(*lane)).map(|lane| local.get(lane)) {
@@ -229,6 +244,25 @@ struct Look {
 }
 
 impl Group<'_> {
+    /// True where the planes of a part of the bust tell that no point of one index comes within `reach` \[m\] of it, nor
+    /// from `start` \[m\] through it: at its end it is farther from the part than its way is long.
+    #[inline(always)]
+    fn is_beyond(&self, position: Vec3x8, start: Option<Vec3x8>, reach: f32x8) -> bool {
+        let Some(caps) = self.caps else { return false };
+        let Vec3x8 { x, y, z } = self.carrier_from_world.points(position);
+        let level = y + z * splat(Caps::SLOPE);
+        let [low, high] = caps.levels.map(splat);
+        let [back, front] = caps.depths.map(splat);
+        let along = (level - high).fast_max(low - level) * splat(self.steep);
+        let beyond =
+            along.fast_max(x.abs() - splat(caps.half_width)).fast_max((z - front).fast_max(back - z));
+        if !beyond.simd_gt(reach).all() {
+            return false;
+        }
+        let way = start.map_or(splat(0.0), |start| (position - self.end_from_start.points(start)).length());
+        beyond.simd_gt(way).all()
+    }
+
     /// Renews planes that are out of date, for points that matter only within `reach` \[m\] of a solid.
     ///
     /// `stuck` are the positions of points that stick to the solid, where their paths begin.
@@ -271,6 +305,15 @@ impl Group<'_> {
         }
         let moved = (local - Vec3x8::load(&plane.anchor)).length();
         Look { near: (load(&plane.distance) - moved).simd_le(reach), blocked: f32x8::from(blocked) }
+    }
+
+    /// Depth \[m\] of a point in the solids, carrier space; the search on a skin begins at a triangle near it.
+    pub(super) fn deepest(&self, point: Vec3, triangle: u32) -> f32 {
+        let depth = |(collider, skin): &(&Collider, Option<&PosedSkin>)| match skin {
+            Some(skin) => skin.depth(point, triangle),
+            None => -collider.shape.distance(point),
+        };
+        self.colliders.iter().map(depth).fold(0.0, f32::max)
     }
 
     /// The nearest solid, and a triangle of a skin for the next look. Points deeper in a skin than `most_depth` \[m\] are

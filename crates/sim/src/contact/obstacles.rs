@@ -97,48 +97,67 @@ impl<'a> Obstacles<'a> {
     /// Signed distance \[m\] to the nearest solid at the end of the step, its unit gradient, and
     /// the solid's index; `None` without colliders. World space.
     pub fn nearest(&self, point: Vec3) -> Option<(f32, Vec3, usize)> {
-        let look = |(index, (collider, skin)): (usize, (&Collider, Option<&PosedSkin>))| {
+        let mut nearest: Option<(f32, Vec3, usize)> = None;
+        for (index, (collider, skin)) in self.solids().enumerate() {
             let local = self.local(collider, point);
+            if nearest.is_some_and(|(least, ..)| collider.shape.is_beyond(local, least.max(0.0))) {
+                continue;
+            }
             let (distance, gradient) = match skin {
                 Some(skin) => skin.distance_and_gradient(local),
                 None => collider.shape.distance_and_gradient(local),
             };
-            let gradient = match collider.carrier {
-                Carrier::World => gradient,
-                Carrier::Piece(piece) | Carrier::Moved(piece) => {
-                    self.pieces[usize::from(piece)].end.direction(gradient)
-                }
-            };
-            (distance, gradient, index)
-        };
-        self.solids().enumerate().map(look).min_by(|a, b| a.0.total_cmp(&b.0))
+            if nearest.is_none_or(|(least, ..)| distance.total_cmp(&least).is_lt()) {
+                nearest = Some((distance, gradient, index));
+            }
+        }
+        nearest.map(|(distance, gradient, index)| match self.colliders[index].carrier {
+            Carrier::World => (distance, gradient, index),
+            Carrier::Piece(piece) | Carrier::Moved(piece) => {
+                (distance, self.pieces[usize::from(piece)].end.direction(gradient), index)
+            }
+        })
     }
 
     /// Lower bound \[m\] of the distance of all solids from a point at the end of the step, 0 where it may be inside
     /// one; quicker than [`Self::nearest`]. World space. `before` is the triangle of a skin near the last point, for
     /// points one beside the other.
     pub fn at_least(&self, point: Vec3, before: &mut u32) -> f32 {
-        let least = self.solids().map(|(collider, skin)| {
+        let mut least = f32::INFINITY;
+        for (collider, skin) in self.solids() {
             let local = self.local(collider, point);
-            let Some(skin) = skin else { return collider.shape.distance_at_least(local) };
-            let (least, triangle) = skin.at_least_about(local, *before);
-            *before = triangle;
-            least
-        });
-        least.fold(f32::INFINITY, f32::min)
+            let found = match skin {
+                Some(skin) => {
+                    let (found, triangle) = skin.at_least_about(local, *before);
+                    *before = triangle;
+                    found
+                }
+                None if collider.shape.is_beyond(local, least) => continue,
+                None => collider.shape.distance_at_least(local),
+            };
+            least = least.min(found);
+        }
+        least
     }
 
     /// Signed distance \[m\] to the nearest solid at the end of the step, infinite without solids: that of
     /// [`Self::nearest`]. World space. `before` is as in [`Self::at_least`].
     pub fn distance(&self, point: Vec3, before: &mut u32) -> f32 {
-        let distances = self.solids().map(|(collider, skin)| {
+        let mut nearest = f32::INFINITY;
+        for (collider, skin) in self.solids() {
             let local = self.local(collider, point);
-            let Some(skin) = skin else { return collider.shape.distance(local) };
-            let found = skin.nearest(local, *before);
-            *before = found.triangle;
-            found.distance
-        });
-        distances.fold(f32::INFINITY, f32::min)
+            let distance = match skin {
+                Some(skin) => {
+                    let found = skin.nearest(local, *before);
+                    *before = found.triangle;
+                    found.distance
+                }
+                None if collider.shape.is_beyond(local, nearest.max(0.0)) => continue,
+                None => collider.shape.distance(local),
+            };
+            nearest = nearest.min(distance);
+        }
+        nearest
     }
 
     /// Mean velocity \[m/s\] over the step of the material of the nearest solid that ends at `point`, `None` without

@@ -4,8 +4,6 @@
 //! point far from it stays a lower bound when the most that a vertex moves is taken off. What a plane needs for this, its
 //! rider, lies in a further plane for each point, behind those of all carriers.
 
-use std::cell::Cell;
-
 use glam::Vec3;
 use strandline_base::par::prelude::*;
 use strandline_base::vec3x8::{Vec3x8, load, splat};
@@ -29,7 +27,8 @@ impl Group<'_> {
         rider.map(|rider| self.world_from_carrier.directions(Vec3x8::load(&rider.anchor)))
     }
 
-    /// Depth \[m\] of points of one index inside a group with a skin; their planes tell which are outside for certain.
+    /// Depth \[m\] of points of one index inside a group with a skin; their planes tell which are outside for certain. Sides of
+    /// the skin are exact: outside a fold that crosses itself contacts have a few points inside, which this counts as outside.
     pub(super) fn depth_on(
         &self,
         position: Vec3x8,
@@ -45,7 +44,7 @@ impl Group<'_> {
         let lanes = (0..LANES).filter(|lane| is_near & (1 << lane) != 0 && counted(*lane));
         let depths = lanes.map(|lane| {
             let triangle = rider.map_or(PosedSkin::UNKNOWN, |rider| rider.friction.0[lane].to_bits());
-            -self.nearest(here.get(lane), &Cell::new(triangle), f32::INFINITY).distance
+            self.deepest(here.get(lane), triangle)
         });
         depths.fold(0.0, f32::max)
     }
