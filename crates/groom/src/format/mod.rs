@@ -22,6 +22,7 @@ pub mod ply;
 pub mod project;
 mod registry;
 mod report;
+mod rows;
 mod save;
 mod sieve;
 mod sound;
