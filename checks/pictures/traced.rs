@@ -36,7 +36,7 @@ fn scene(way: [f32; 3], [eumelanin, pheomelanin]: [f32; 2]) -> Scene {
 }
 
 /// Means of the bands of a reference.
-fn reference(light: &str, pigment: &str) -> Vec<Vec3> {
+pub(crate) fn reference(light: &str, pigment: &str) -> Vec<Vec3> {
     let text = std::fs::read_to_string(folder().join("look/four_lights.csv")).unwrap();
     let start = format!("{light},{pigment},");
     let lines = text.lines().filter_map(|line| line.strip_prefix(&start));
