@@ -8,6 +8,7 @@ use strandline_render::fibre::{Chiang, Pigment};
 use crate::light::{sphere, sun};
 use crate::linear::folder;
 use crate::opacity::spline;
+use crate::traced::reference;
 
 /// Mean light of a picture of the groom on a black ball in the sun, with colours on its strands and a look's pigment.
 fn mean_in_the_sun(color: Option<Vec3>, change: impl FnOnce(&mut Look)) -> Vec3 {
@@ -99,4 +100,41 @@ fn hair_of_a_colour_has_its_hue_and_saturation() {
     }
     let black = mean_in_the_sun(Some(Vec3::splat(0.008)), |_| ()) / white;
     assert!(black.max_element() < 0.08, "{black}");
+}
+
+/// Light of path-traced hair of a pigment over that of white hair in the same light.
+fn traced_beside_white(light: &str, pigment: &str) -> Vec3 {
+    let [of, white] = [pigment, "white"].map(|name| reference(light, name).iter().sum::<Vec3>());
+    of / white
+}
+
+#[test]
+fn a_colour_is_what_path_tracing_shows_of_its_pigment() {
+    for (pigment, eumelanin, pheomelanin) in [("blonde", 0.3, 0.0), ("brown", 0.6, 0.2)] {
+        let color = Chiang { eumelanin, pheomelanin, ..Chiang::default() }.reflectances(1.0)[0];
+        // Light through hair from behind is that of few scatterings, of which pigment takes less.
+        for (light, most) in [("side", 1.3), ("above", 1.3), ("behind", 1.55), ("below", 2.1)] {
+            let shown = traced_beside_white(light, pigment) / color;
+            assert!((0.9..most).contains(&shown.min_element()), "{light} {pigment}: {shown} of {color}");
+            assert!((0.9..most).contains(&shown.max_element()), "{light} {pigment}: {shown} of {color}");
+        }
+    }
+}
+
+#[test]
+fn no_hair_is_darker_than_the_glint_of_its_surface() {
+    // Light from the surface has no colour and meets no pigment: black hair shows it in each channel.
+    for light in ["side", "above", "behind", "below"] {
+        let floor = traced_beside_white(light, "black");
+        assert!((0.03..0.09).contains(&floor.min_element()), "{light}: {floor}");
+        assert!(floor.max_element() < 1.05 * floor.min_element(), "{light}: {floor}");
+    }
+    let white = mean_in_the_sun(Some(Vec3::ONE), |_| ());
+    let black = mean_in_the_sun(Some(Vec3::ZERO), |_| ()) / white;
+    assert!((0.03..0.06).contains(&black.min_element()), "{black}");
+    assert!(black.max_element() < 1.1 * black.min_element(), "{black}");
+    // A channel below that floor stays there, and colours close to it lose their hue.
+    let color = Vec3::new(0.0296, 0.0144, 0.0091);
+    let shown = mean_in_the_sun(Some(color), |_| ()) / white;
+    assert!(shown.cmpge(black).all() && shown.max_element() < black.max_element() + color.x, "{shown}");
 }

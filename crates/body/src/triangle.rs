@@ -4,19 +4,42 @@ use glam::DVec3;
 
 use crate::layers::Corners;
 
+/// The plane of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plane {
+    /// A corner.
+    corner: DVec3,
+    /// Normal, as long as twice the area.
+    normal: DVec3,
+    /// Square of that length.
+    area: f64,
+}
+
+impl Plane {
+    pub fn of([a, b, c]: &Corners) -> Self {
+        let normal = (b - a).cross(c - a);
+        Self { corner: *a, normal, area: normal.length_squared() }
+    }
+}
+
 /// The squared distance of a point from a triangle, if it is less than a known one.
+pub(crate) fn nearer(corners: &Corners, point: DVec3, known: f64) -> Option<f64> {
+    nearer_than(corners, &Plane::of(corners), point, known)
+}
+
+/// The same for a triangle whose plane is known.
 ///
 /// Double precision: in single precision the distance to a triangle that is small and far comes out
 /// wrong by its whole size.
-pub(crate) fn nearer(corners: &Corners, point: DVec3, known: f64) -> Option<f64> {
-    let [a, b, c] = *corners;
-    let normal = (b - a).cross(c - a);
+#[inline]
+pub(crate) fn nearer_than(corners: &Corners, plane: &Plane, point: DVec3, known: f64) -> Option<f64> {
+    let Plane { corner, normal, area } = *plane;
     // The distance from its plane is a lower bound, and cheap.
-    let height = (point - a).dot(normal);
-    let area = normal.length_squared();
+    let height = (point - corner).dot(normal);
     if height * height > known * area {
         return None;
     }
+    let [a, b, c] = *corners;
     let mut nearest = f64::INFINITY;
     for [start, end] in [[a, b], [b, c], [c, a]] {
         // The nearest place lies on an edge that has the point on its outer side, or within all of them.

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use glam::DVec3;
 
 use crate::layers::Corners;
-use crate::triangle::nearer;
+use crate::triangle::{Plane, nearer_than};
 
 /// Most triangles of a leaf.
 const LEAF: usize = 4;
@@ -15,6 +15,8 @@ const DEPTH: usize = 40;
 /// A tree of boxes over triangles.
 pub(crate) struct TriangleTree<'a> {
     triangles: Cow<'a, [Corners]>,
+    /// Their planes.
+    planes: Vec<Plane>,
     /// The triangles of the tree, those of a leaf beside each other.
     order: Vec<u32>,
     nodes: Vec<Node>,
@@ -59,7 +61,8 @@ impl<'a> TriangleTree<'a> {
     /// A tree over those of the triangles that `order` lists.
     pub fn new(triangles: impl Into<Cow<'a, [Corners]>>, order: Vec<u32>) -> Self {
         let triangles = triangles.into();
-        let mut tree = Self { triangles, nodes: Vec::with_capacity(order.len()), order };
+        let planes = triangles.iter().map(Plane::of).collect();
+        let mut tree = Self { triangles, planes, nodes: Vec::with_capacity(order.len()), order };
         let count = tree.order.len();
         if count > 0 {
             tree.grow(0, count);
@@ -101,7 +104,8 @@ impl<'a> TriangleTree<'a> {
 
     /// Takes a triangle for the nearest where it is nearer.
     pub fn offer(&self, triangle: u32, point: DVec3, nearest: &mut Nearest) {
-        if let Some(squared) = nearer(&self.triangles[triangle as usize], point, nearest.squared) {
+        let at = triangle as usize;
+        if let Some(squared) = nearer_than(&self.triangles[at], &self.planes[at], point, nearest.squared) {
             *nearest = Nearest { squared, triangle };
         }
     }

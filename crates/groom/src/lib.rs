@@ -22,6 +22,7 @@ mod ties;
 mod unlike;
 
 pub mod format;
+pub mod root_ball;
 
 pub use binding::{Binding, Frames, Influence, MOST_INFLUENCES, Surface};
 pub use brush::{Stroke, Tool};
@@ -31,6 +32,7 @@ pub use guides::Guides;
 pub use influences::Influences;
 pub use outside::Outside;
 pub use rest::RestShape;
+pub use root_ball::RootBall;
 pub use strandline_base::{LANES, Lanes, Vec3Lanes, block_count};
 pub use style::{Style, StyleSettings};
 pub use ties::Tie;

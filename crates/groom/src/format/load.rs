@@ -9,8 +9,8 @@ use super::cleaning::Cleaning;
 use super::ends::RootEnd;
 use super::report::Report;
 use super::{
-    Attribute, Chosen, Format, HAIR_WIDTH, MAX_FILE_BYTES, MAX_POINTS, MAX_STRANDS, Parsed, Reader, project,
-    sieve::sieve, sound::mend_looks,
+    Attribute, Chosen, FORMATS, Format, HAIR_WIDTH, MAX_FILE_BYTES, MAX_POINTS, MAX_STRANDS, Parsed, Reader,
+    project, sieve::sieve, sound::mend_looks, unit::unit_alone,
 };
 use crate::{Groom, GroomError, Widths};
 
@@ -300,7 +300,8 @@ pub fn prepare(parsed: Parsed, options: &LoadOptions) -> Result<Loaded, GroomErr
     problems.extend(groom.rooted(options.root_end, options.cleaning, HINT));
     let scale = match options.scale {
         Scale::Factor(factor) => factor,
-        Scale::Auto => plausible_scale(&groom),
+        Scale::Auto if defines_space(parsed.format) => 1.0,
+        Scale::Auto => unit_alone(&[&groom]),
     };
     if scale != 1.0 && options.scale == Scale::Auto {
         problems.push(format!("one unit of the file is taken as {scale} m"));
@@ -319,9 +320,8 @@ pub fn prepare(parsed: Parsed, options: &LoadOptions) -> Result<Loaded, GroomErr
     Ok(Loaded { groom, report })
 }
 
-fn plausible_scale(groom: &Groom) -> f32 {
-    let bounds = groom.bounds_without_strays();
-    let diagonal = bounds.min.distance(bounds.max);
-    let fits = |scale: &f32| (0.05..=2.0).contains(&(scale * diagonal));
-    [1.0, 0.01, 0.001, 0.0254].into_iter().find(fits).unwrap_or(1.0)
+/// True for the name of a format that defines units and axes.
+fn defines_space(name: &str) -> bool {
+    let ending = name.strip_prefix('.').unwrap_or(name);
+    FORMATS.iter().any(|format| format.defines_space && format.ending == ending)
 }

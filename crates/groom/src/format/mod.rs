@@ -22,11 +22,13 @@ pub mod ply;
 pub mod project;
 mod registry;
 mod report;
+mod rows;
 mod save;
 mod sieve;
 mod sound;
 pub mod tfx;
 mod tfx_text;
+mod unit;
 pub mod usda;
 
 pub use attribute::Attribute;
@@ -38,6 +40,7 @@ pub use load::{LoadOptions, Loaded, Scale, Up, load, load_all, prepare, sieved};
 pub use registry::{FORMATS, Format, Read, Reader, Write, endings};
 pub use report::{Counts, GroupOf, Lengths, Report};
 pub use save::{Saved, save};
+pub use unit::{GROOMS, UNITS, unit_alone};
 
 /// Most strands that a reader accepts.
 pub const MAX_STRANDS: u64 = 8_000_000;

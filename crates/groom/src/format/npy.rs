@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use super::bytes::Source;
+use super::rows;
 use super::{MAX_POINTS, MAX_POINTS_PER_STRAND, MAX_STRANDS, Parsed};
 use crate::{Groom, GroomError};
 use glam::Vec3;
@@ -63,9 +64,9 @@ pub(super) fn strands(source: &Source, array: &Array, per_strand: Option<u32>) -
     let (count, each) = match (&array.shape[..], per_strand) {
         ([strands, points, 3], _) => (*strands, *points),
         ([points, 3], Some(each)) => split(source, *points, each)?,
-        ([_, 3], None) => {
-            let expected = "an array [strand, point, 3], or the points of a strand (`--per-strand N`, in Python \
-                            `points_per_strand=N`)";
+        ([count, 3], None) => {
+            let places = points(array, 0, (*count).min(MAX_POINTS));
+            let expected = format!("an array [strand, point, 3], or {}", rows::asked(&places));
             return Err(source.error(format!("an array {:?}", array.shape), expected));
         }
         _ => return Err(source.error(format!("an array {:?}", array.shape), "[strand, point, 3]")),

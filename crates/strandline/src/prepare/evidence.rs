@@ -1,25 +1,17 @@
 //! Evidence of how strands lie on a head: where roots are, how strands hang, a free face.
 
-use std::f32::consts::TAU;
-
-use glam::{DMat3, DVec3, Vec3};
-use strandline_base::math;
+use glam::Vec3;
 
 use super::skull::Skull;
-use crate::groom::Groom;
+use crate::groom::{
+    Groom, RootBall,
+    root_ball::{self, covered},
+};
 
 /// Strands whose points are looked at, points of each, and roots that are looked at.
 const STRANDS: usize = 150;
 const POINTS: usize = 8;
 const ROOTS: usize = 800;
-/// Directions that roots of a head of hair lie in, and the shares of them that are those of a full head of hair: more
-/// than a beard and less than fur. Around a ball through them the roots of a beard may cover as much as those of little
-/// hair.
-const DIRECTIONS: usize = 120;
-const FULL: std::ops::Range<f32> = 0.18..0.85;
-const SURELY_FULL: f32 = 0.3;
-/// Volume of roots over the cube of their size below which they lie in a plane.
-const FLAT: f64 = 1e-5;
 /// Depth below the crown over the width of a skull: of its middle, and of the brows.
 const MIDDLE: f32 = 0.7;
 const BROWS: f32 = 0.5;
@@ -100,51 +92,23 @@ impl Hair {
     /// True where roots lie around a middle as those of a full head of hair do; the middle is that of a ball through
     /// them where it is not known.
     pub fn is_full(&self, middle: Option<Vec3>) -> bool {
-        FULL.contains(&self.covered(middle))
+        root_ball::FULL.contains(&self.covered(middle))
     }
 
     /// True where roots lie around the middle of a ball through them as those of no beard do, in whatever axes.
     pub fn is_surely_full(&self) -> bool {
-        (SURELY_FULL..FULL.end).contains(&self.covered(None))
+        (root_ball::SURELY_FULL..root_ball::FULL.end).contains(&self.covered(None))
     }
 
     /// Share of the directions from a middle in which roots lie; 0 where they lie in a plane.
     fn covered(&self, middle: Option<Vec3>) -> f32 {
-        let Some(middle) = middle.or_else(|| Some(self.ball()?.0)) else { return 0.0 };
-        let mut has = [false; DIRECTIONS];
-        for root in &self.roots {
-            let way = (*root - middle).normalize_or_zero();
-            let alike = |index: usize| direction(index).dot(way);
-            let nearest =
-                (1..DIRECTIONS).fold(0, |best, one| if alike(one) > alike(best) { one } else { best });
-            has[nearest] = true;
-        }
-        has.iter().filter(|has| **has).count() as f32 / DIRECTIONS as f32
-    }
-
-    /// Middle and radius of the ball that roots lie on; none where they lie in a plane.
-    fn ball(&self) -> Option<(Vec3, f32)> {
-        let middle = mean(self.roots.iter().copied()).as_dvec3();
-        let count = self.roots.len() as f64;
-        let (mut spread, mut pull) = (DMat3::ZERO, DVec3::ZERO);
-        for root in &self.roots {
-            let beside = root.as_dvec3() - middle;
-            spread +=
-                DMat3::from_cols(beside * beside.x, beside * beside.y, beside * beside.z) * (1.0 / count);
-            pull += beside * (beside.length_squared() / count);
-        }
-        let size = spread.x_axis.x + spread.y_axis.y + spread.z_axis.z;
-        if spread.determinant().abs() <= FLAT * size * size * size {
-            return None;
-        }
-        // The least squares of |p|^2 = 2 c p + k.
-        let center = (middle + 0.5 * (spread.inverse() * pull)).as_vec3();
-        Some((center, mean_of(self.roots.iter().map(|root| root.distance(center)))))
+        let middle = middle.or_else(|| Some(RootBall::through(&self.roots)?.middle));
+        middle.map_or(0.0, |middle| covered(&self.roots, middle))
     }
 
     /// Evidence for hair alone to stand upright: strands hang and roots lie high on the ball through them.
     pub fn upright(&self) -> f32 {
-        let high = self.ball().map_or(0.0, |(middle, radius)| {
+        let high = RootBall::through(&self.roots).map_or(0.0, |RootBall { middle, radius }| {
             (mean(self.roots.iter().copied()).y - middle.y) / radius.max(f32::MIN_POSITIVE)
         });
         HANG * self.hangs() + HIGH * high.clamp(-1.0, 1.0)
@@ -196,12 +160,4 @@ fn mean(places: impl Iterator<Item = Vec3>) -> Vec3 {
 fn mean_of(values: impl Iterator<Item = f32>) -> f32 {
     let (sum, count) = values.fold((0.0_f32, 0.0_f32), |(sum, count), value| (sum + value, count + 1.0));
     sum / count.max(1.0)
-}
-
-/// One of many directions, spread evenly.
-fn direction(index: usize) -> Vec3 {
-    let height = 1.0 - (2 * index + 1) as f32 / DIRECTIONS as f32;
-    let (flat, around) = ((1.0 - height * height).sqrt(), (0.618_034 * index as f32).fract() * TAU);
-    let beside = math::unit_at(around) * flat;
-    Vec3::new(beside.x, height, beside.y)
 }

@@ -10,22 +10,20 @@ use super::{
     noted::noted,
     placing::{Defined, Placing, Placings, diagonal, upright},
     relation::{Found, Head, Search},
-    sample::{NEAR, NEARER, Sample, UNITS},
+    sample::{NEAR, NEARER, Sample},
     shown::{Body, SHAPELESS, Shown},
-    units::{SCALPS, first_of, given_unit, unit_of_width},
+    units::{SCALPS, given_unit, unit_of_width},
 };
 use crate::{
     Scene,
     body::{Aabb, Mesh},
     groom::{
         Groom,
-        format::{Scale, Up},
+        format::{GROOMS, Scale, UNITS, Up, unit_alone},
     },
     scene::GroomPart,
 };
 
-/// Diagonal of the box around a groom without a body \[m\].
-const GROOMS: std::ops::RangeInclusive<f32> = 0.05..=2.0;
 /// Least advantage of another axis over y in the height of roots for it to be up, and in all evidence.
 const HIGHER: f32 = 0.15;
 const SURER: f32 = 0.3;
@@ -46,13 +44,6 @@ const FAR_OFF: f32 = 0.5;
 const CLOSE: f32 = 0.7;
 /// Share of the confidence that a doubt leaves.
 const DOUBTED: f32 = 0.3;
-
-/// Metres of a unit of a groom alone.
-pub(super) fn unit_alone(grooms: &[&Groom]) -> f32 {
-    let bounds = grooms.iter().map(|groom| groom.bounds());
-    let bounds = bounds.reduce(|one, two| Aabb { min: one.min.min(two.min), max: one.max.max(two.max) });
-    bounds.map_or(1.0, |bounds| first_of(diagonal(bounds), &GROOMS))
-}
 
 /// Placements of the files of a groom, which share theirs, and of a body's files, where there are some of each.
 pub(super) fn placings(scene: &Scene, strands: Strands, body: Option<Body>) -> Placings {

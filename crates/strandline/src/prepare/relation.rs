@@ -6,12 +6,12 @@ use strandline_base::math;
 use super::evidence::Hair;
 use super::head::{Pose, turns};
 use super::placing::{Placing, place_mesh, upright};
-use super::sample::{FURTHER, UNITS};
+use super::sample::FURTHER;
 use super::skull::Skull;
 use crate::{
     Scene,
     body::{Aabb, Mesh, NearestSurface},
-    groom::format::{Scale, Up},
+    groom::format::{Scale, UNITS, Up},
 };
 
 /// Distance of roots from the skin over their size with which they lie on it, and over that of others below which a

@@ -8,12 +8,10 @@ use strandline_base::math;
 use super::placing::{Placing, diagonal};
 use crate::{
     body::{Aabb, Mesh, Random},
-    groom::Groom,
+    groom::{Groom, format::UNITS},
 };
 
-/// Metres that a unit of a file may be, likelier ones first.
-pub(super) const UNITS: [f32; 5] = [1.0, 0.01, 0.001, 0.0254, 0.00254];
-/// Units that a file may have where none of [`UNITS`] fits: feet, decimetres, tenths of millimetres.
+/// Units that a file may have where none of `UNITS` fits: feet, decimetres, tenths of millimetres.
 pub(super) const FURTHER: [f32; 3] = [0.3048, 0.1, 1e-4];
 /// Roots and vertices that are looked at.
 const ROOTS: usize = 200;

@@ -2,8 +2,8 @@
 
 use strandline_base::math;
 
-use super::sample::{FURTHER, UNITS};
-use crate::groom::format::Scale;
+use super::sample::FURTHER;
+use crate::groom::format::{Scale, UNITS};
 
 /// Distance from ear to ear \[m\] of the roots on a head: that of a doll to that of a giant, and that of a person, which a
 /// head that no unit brings there is given.

@@ -10,6 +10,7 @@ use super::bytes::Source;
 use super::joining::Lines;
 use super::npy::{even, split};
 use super::project::linear;
+use super::rows;
 use super::{MAX_POINTS, MAX_POINTS_PER_STRAND, MAX_STRANDS, Parsed};
 use crate::{Groom, GroomError, Influences, Widths};
 
@@ -39,7 +40,7 @@ pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError>
     }
     let places = vertices.triples(["x", "y", "z"]);
     let places = places.ok_or_else(|| source.error("vertices without coordinates", "x, y and z"))?;
-    let places = places.into_iter().map(Vec3::from_array).collect();
+    let places: Vec<Vec3> = places.into_iter().map(Vec3::from_array).collect();
     let mut problems = Vec::new();
     let (starts, order) = match (strands.numbers("nsegs"), per_strand) {
         (Some(segments), _) => chains(&source, segments, edges, count)?,
@@ -57,8 +58,7 @@ pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError>
             return Err(source.error(found, "strands; a mesh is a body (`--body`)"));
         }
         (None, None) => {
-            let expected = "`strand` and `edge` elements, or the points of a strand (`--per-strand N`, in Python \
-                            `points_per_strand=N`)";
+            let expected = format!("`strand` and `edge` elements, or {}", rows::asked(&places));
             return Err(source.error(format!("{count} vertices and nothing that joins them"), expected));
         }
     };

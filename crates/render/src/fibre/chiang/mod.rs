@@ -46,7 +46,7 @@ settings! {
         /// Index of refraction.
         index: f32 = 1.55, in [1.05, 3.0], more "a brighter surface";
         /// Number of times that light is scattered from hair to hair, at most: dark hair needs few.
-        scatterings: u32 = 32, in [0, 64], slider [0, 64], more "brighter light hair, at a cost";
+        scatterings: u32 = 64, in [0, 64], slider [0, 64], more "brighter light hair, at a cost";
         /// Cells that scattered light is carried through, along the longest side of the hair.
         cells: u32 = MOST_CELLS, in [8, MOST_CELLS], more "sharper scattered light, at a cost";
     }
