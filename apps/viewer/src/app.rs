@@ -13,9 +13,7 @@ use strandline::{
     settings::{SettingError, Stroke},
 };
 
-use crate::{
-    compared, export, files, found, loading, messages, playback, recent, rescue, saves, typed, watch,
-};
+use crate::{compared, export, files, found, notes, playback, recent, rescue, saves, stages, typed, watched};
 
 /// The window's state: the scene that plays, and the changes of the user.
 pub struct App {
@@ -50,16 +48,14 @@ pub struct App {
     /// The scene that is on its way, and the number of its command.
     pub(crate) pending: Option<(u64, Box<Scene>)>,
     pub(crate) error: Option<String>,
-    /// The scene that could not be loaded, and the mends that the last error names.
-    pub(crate) failed: Option<Box<Scene>>,
-    pub(crate) mended: messages::Mended,
-    pub(crate) notes: messages::Notes,
+    /// The mends that the last error names.
+    pub(crate) mended: notes::Mended,
+    pub(crate) notes: notes::Notes,
     /// The overlay over the picture.
     pub(crate) overlay: Option<Overlay>,
-    /// The stage of the scene that is on its way, and a note for when it is there.
-    pub(crate) loading: Option<loading::Loading>,
-    pub(crate) reloads: Option<String>,
-    pub(crate) watch: watch::Watch,
+    /// The stage of the scene that is on its way.
+    pub(crate) loading: Option<stages::Loading>,
+    pub(crate) watch: watched::Watch,
     pub(crate) shown: Option<Shown>,
     pub(crate) texture: Option<egui::TextureHandle>,
     /// Pictures a second, smoothed.
@@ -117,6 +113,11 @@ pub enum Tool {
     Brush,
 }
 
+/// Asks the window for another pass, once it is there. An immediate one would be two passes, the second one useless.
+fn waker(context: Arc<OnceLock<egui::Context>>) -> impl Fn() + Send + 'static {
+    move || context.get().into_iter().for_each(|context| context.request_repaint_after(SOON))
+}
+
 impl App {
     /// Radius of the hand \[m\] to begin with.
     pub(crate) const RADIUS: f32 = 0.012;
@@ -127,12 +128,7 @@ impl App {
     /// The system gives no thread.
     pub fn new(scene: Scene) -> Result<Self, Error> {
         let context = Arc::new(OnceLock::<egui::Context>::new());
-        let known = context.clone();
-        // An immediate repaint would be two passes, the second one useless.
-        let wake = move || {
-            known.get().into_iter().for_each(|context| context.request_repaint_after(SOON));
-        };
-        let live = Live::new(scene.clone(), wake)?;
+        let live = Live::new(scene.clone(), waker(context.clone()))?;
         live.send(Command::Adapt(true));
         let app = Self {
             history: History::new(&scene),
@@ -162,13 +158,11 @@ impl App {
             keeps_view: false,
             pending: Some((1, Box::new(scene))),
             error: None,
-            failed: None,
-            mended: messages::Mended::default(),
-            notes: messages::Notes::default(),
+            mended: notes::Mended::default(),
+            notes: notes::Notes::default(),
             overlay: None,
             loading: None,
-            reloads: None,
-            watch: watch::Watch::default(),
+            watch: watched::Watch::default(),
             shown: None,
             texture: None,
             rate: 0.0,
@@ -285,7 +279,7 @@ impl App {
 
     /// Loads another scene; until it is there the old one stays and the controls change it.
     pub(crate) fn load(&mut self, mut scene: Scene) {
-        (self.error, self.failed) = (None, None);
+        (self.error, self.mended.failed) = (None, None);
         self.watch.note(&scene);
         // The window's size and the devices that the program was started with stay.
         let PictureSettings { width, height, .. } = self.scene.picture;

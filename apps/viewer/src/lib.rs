@@ -18,27 +18,31 @@ mod libraries;
 mod loading;
 mod looks;
 mod messages;
+mod notes;
 mod overlays;
 mod panels;
+mod path_field;
 mod playback;
 mod recent;
 mod rescue;
 mod saves;
 mod saving;
 mod sight;
+mod stages;
 mod status_bar;
 mod timeline_bar;
 mod typed;
 mod undoing;
 mod viewport;
 mod watch;
+mod watched;
 mod wind;
 mod window;
 
 pub use app::{App, Tool};
 use std::path::PathBuf;
 use std::sync::Arc;
-pub use watch::Reload;
+pub use watched::Reload;
 
 use eframe::{
     egui,

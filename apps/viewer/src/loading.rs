@@ -9,20 +9,13 @@ use strandline::{
     live::{LoadStage, Overlaid},
 };
 
-use crate::{App, overlays};
+use crate::{
+    App, overlays,
+    stages::{Loading, share, words},
+};
 
 /// Interval at which the seconds of a load are shown.
 const TICK: Duration = Duration::from_millis(500);
-
-/// A scene that is on its way.
-pub struct Loading {
-    /// Number of its command.
-    number: u64,
-    stage: LoadStage,
-    since: Instant,
-    /// Its guides as they hang, and the camera that sees them, once they are there.
-    hair: Option<(Arc<Overlaid>, Camera)>,
-}
 
 impl App {
     /// Takes the stage of a load.
@@ -43,18 +36,6 @@ impl App {
         let loading = self.loading.as_ref().filter(|_| self.is_loading())?;
         Some((loading.stage, loading.hair.is_some()))
     }
-}
-
-/// Words for the stage of a load, with its seconds.
-fn words(loading: Option<&Loading>) -> String {
-    let Some(loading) = loading else { return "loading ...".to_owned() };
-    format!("{} ... {} s", loading.stage.name(), loading.since.elapsed().as_secs())
-}
-
-/// Share of a load that is done when its stage begins.
-fn share(loading: Option<&Loading>) -> f32 {
-    let stage = loading.and_then(|loading| LoadStage::ALL.iter().position(|stage| *stage == loading.stage));
-    stage.unwrap_or(0) as f32 / LoadStage::ALL.len() as f32
 }
 
 /// The progress of a load that is under way, in a line.

@@ -2,10 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use eframe::egui::{self, Key, TextEdit, Ui, accesskit::Role};
 use strandline::{format::Format, mesh::MeshFormat};
-
-use crate::{App, controls::button};
 
 /// Entries of a folder that are looked at, and names that are offered.
 const LOOKED_AT: usize = 4000;
@@ -57,16 +54,16 @@ fn common(completions: &[String]) -> Option<String> {
 /// The path that is typed, and what completes it.
 #[derive(Default)]
 pub struct Typed {
-    path: String,
+    pub path: String,
     /// The text that completions were looked up for, those, and true while they are shown.
     asked: String,
-    offered: Vec<String>,
-    is_open: bool,
+    pub offered: Vec<String>,
+    pub is_open: bool,
 }
 
 impl Typed {
     /// Looks completions up where the text has changed.
-    fn look_up(&mut self) {
+    pub fn look_up(&mut self) {
         if self.asked != self.path {
             self.asked.clone_from(&self.path);
             self.offered = completions(self.path.trim());
@@ -74,67 +71,12 @@ impl Typed {
     }
 
     /// Completes the path by what all completions have in common, else by the first of them.
-    fn complete(&mut self) {
+    pub fn complete(&mut self) {
         let longer = common(&self.offered).filter(|common| common.len() > self.path.len());
         if let Some(path) = longer.or_else(|| self.offered.first().cloned()) {
             self.path = path;
             self.look_up();
         }
-    }
-}
-
-/// The field with its completions; Tab takes what they have in common, Enter loads the file.
-pub fn show(app: &mut App, ui: &mut Ui) {
-    let mut wanted = None;
-    let typed = &mut app.typed;
-    ui.horizontal(|ui| {
-        typed.look_up();
-        let field = TextEdit::singleline(&mut typed.path).hint_text("path of a file").desired_width(180.0);
-        let response = ui.add(field.lock_focus(!typed.offered.is_empty()));
-        response.widget_info(|| egui::WidgetInfo::labeled(Role::TextInput, true, "path of a file"));
-        let tabbed = response.has_focus() && ui.input(|input| input.key_pressed(Key::Tab));
-        if response.changed() {
-            typed.is_open = true;
-            typed.look_up();
-        }
-        if tabbed && !typed.offered.is_empty() {
-            typed.complete();
-            to_end(ui, response.id, &typed.path);
-        }
-        let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-        response.on_hover_text("path of a scene, groom or body; Tab completes it\ndefault none");
-        if button(ui, "Load", "loads the file") || entered {
-            wanted = Some(typed.path.trim().to_owned());
-        }
-    });
-    let offered = if typed.is_open { typed.offered.clone() } else { Vec::new() };
-    for path in &offered {
-        let (folder, name) = path.trim_end_matches('/').rsplit_once('/').unwrap_or(("", path));
-        let name = format!("{name}{}", if path.len() > folder.len() + name.len() + 1 { "/" } else { "" });
-        if ui.small_button(name).on_hover_text(path).clicked() {
-            typed.path.clone_from(path);
-            typed.look_up();
-            wanted = (!path.ends_with('/')).then(|| path.clone());
-        }
-    }
-    match wanted {
-        Some(path) if path.is_empty() => {
-            app.note("type the path of a file first, or drop one on the window".to_owned());
-        }
-        Some(path) => {
-            app.typed.is_open = false;
-            app.open_file(&PathBuf::from(path));
-        }
-        None => {}
-    }
-}
-
-/// Puts the cursor of a field behind its text.
-fn to_end(ui: &Ui, id: egui::Id, text: &str) {
-    if let Some(mut state) = TextEdit::load_state(ui.ctx(), id) {
-        let end = egui::text::CCursor::new(text.chars().count());
-        state.cursor.set_char_range(Some(egui::text::CCursorRange::one(end)));
-        state.store(ui.ctx(), id);
     }
 }
 

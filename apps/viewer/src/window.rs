@@ -33,7 +33,7 @@ impl App {
                 LiveEvent::Note(note) => self.note(note),
                 LiveEvent::NotLoaded(number, kind, error) => {
                     // The previous scene still plays.
-                    self.failed =
+                    self.mended.failed =
                         self.pending.take_if(|(pending, _)| *pending == number).map(|(_, scene)| scene);
                     (self.restoring, self.keeps_view) = (false, false);
                     self.error = Some(with_remedy(kind, error));
@@ -81,7 +81,7 @@ impl App {
             viewport::look(self, before);
         }
         self.notes.clear();
-        self.reloads.take().into_iter().for_each(|note| self.note(note));
+        self.watch.reloads.take().into_iter().for_each(|note| self.note(note));
         self.live.send(Command::Play(self.playing));
     }
 

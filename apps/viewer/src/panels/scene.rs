@@ -7,7 +7,7 @@ use crate::{
     App,
     controls::{button, tick_of},
     files::Wanted,
-    typed,
+    path_field,
 };
 
 pub fn show(app: &mut App, ui: &mut Ui) {
@@ -55,7 +55,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
             app.open_file(&file);
         }
     }
-    typed::show(app, ui);
+    path_field::show(app, ui);
     let before = app.watch.on;
     let tip = "files of the scene that change on disk are loaded again: --watch";
     tick_of(ui, (&mut app.watch.on, false), "watch files", tip);

@@ -1,4 +1,4 @@
-//! What a window would show, drawn here: triangles of its meshes with their textures, without a device.
+//! A window as a display would show it: triangles of its meshes with their textures, without a device.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};

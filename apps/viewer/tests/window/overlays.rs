@@ -5,6 +5,8 @@ use std::time::Duration;
 use eframe::egui::{self, Key, accesskit::Role};
 use strandline::live::{LoadStage, Overlay};
 
+use strandline_viewer::App;
+
 use crate::person::{Window, scene};
 
 /// Chooses an overlay by its menu, and waits for its numbers.
@@ -57,11 +59,10 @@ fn overlays_are_chosen_by_their_names_and_have_numbers_of_the_hair() {
     for _ in 0..4 {
         window.press(Key::Period);
     }
-    window.settle();
-    assert!(most(&values(&window)) > 0.05, "{} m/s", most(&values(&window)));
+    let speed = |app: &App| app.shown().and_then(|shown| shown.overlaid.clone()).map(|all| most(&all.values));
+    window.until("it moves", |app| speed(app).is_some_and(|most| most > 0.05));
     window.press(Key::Home);
-    window.settle();
-    assert_eq!(most(&values(&window)), 0.0);
+    window.until("it stands still", |app| speed(app) == Some(0.0));
     // Groups are those of the groom; the key goes on to the next overlay, and after the last to none.
     choose(&mut window, Overlay::Group);
     window.press(Key::L);
@@ -117,7 +118,7 @@ fn files_that_change_are_loaded_again_and_the_view_stays() {
     std::fs::write(&file, own.to_toml()).unwrap();
     let mut window = Window::still();
     window.pass(Vec::new(), Some(&file));
-    let strands = |app: &strandline_viewer::App| app.shown().map_or(0, |shown| shown.drawing.strands);
+    let strands = |app: &App| app.shown().map_or(0, |shown| shown.drawing.strands);
     window.until("the groom", |app| strands(app) == 40 && !app.is_loading());
     window.press_with(egui::Modifiers::ALT, Key::ArrowLeft);
     window.settle();

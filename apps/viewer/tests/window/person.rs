@@ -79,6 +79,11 @@ impl Window {
         self.textures.draw(&primitives, self.harness.ctx.content_rect().size(), scale)
     }
 
+    /// The lower end of a label.
+    pub fn bottom_of(&self, label: &str) -> f32 {
+        self.harness.get_by_label(label).rect().bottom()
+    }
+
     /// The right end of the controls in a part of the window.
     pub fn right_of_controls(&self, part: egui::Rect) -> f32 {
         let roles =
@@ -107,9 +112,14 @@ impl Window {
 
     /// Lays the window out until something holds, for at most a minute.
     pub fn until(&mut self, what: &str, holds: impl Fn(&App) -> bool) {
+        self.within(60, what, holds);
+    }
+
+    /// Lays the window out until something holds, for so many seconds at most.
+    pub fn within(&mut self, seconds: u64, what: &str, holds: impl Fn(&App) -> bool) {
         let begin = Instant::now();
         while !holds(self.app()) {
-            assert!(begin.elapsed() < Duration::from_secs(60), "never: {what}");
+            assert!(begin.elapsed() < Duration::from_secs(seconds), "never: {what}");
             self.pass(Vec::new(), None);
             std::thread::sleep(Duration::from_millis(2));
         }

@@ -51,8 +51,7 @@ fn hair_is_coloured_lit_and_blown_and_its_length_style_and_stiffness_are_set() {
     let mut window = ready(Window::still());
     let picture = window.picture();
     window.click("blonde");
-    window.settle();
-    assert!(window.picture() != picture);
+    window.until("the colour", |app| app.shown().is_some_and(|shown| shown.picture != picture));
     finish(&mut window, "colour");
     window.steps = 0;
     window.toggle("Lights");
@@ -88,13 +87,12 @@ fn hair_is_coloured_lit_and_blown_and_its_length_style_and_stiffness_are_set() {
 #[test]
 fn a_frame_is_gone_to_and_two_settings_are_compared() {
     let mut window = Window::new();
-    window.until("frames", |app| app.timeline().good > 40);
+    window.within(600, "frames", |app| app.timeline().good > 40);
     window.press(Key::Space);
     window.settle();
     window.steps = 0;
     window.type_at(Role::SpinButton, "frame", "40");
-    window.settle();
-    assert_eq!(window.app().timeline().playhead, 40);
+    window.until("frame 40", |app| app.timeline().playhead == 40);
     finish(&mut window, "frame 40");
     window.toggle("View");
     (0..20).for_each(|_| window.pass(Vec::new(), None));

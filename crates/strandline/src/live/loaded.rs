@@ -8,7 +8,7 @@ use std::sync::Arc;
 use strandline_base::WholeFile;
 
 use super::messages::LoadStage;
-use super::overlay::{Overlaid, sketch};
+use super::overlaid::{Overlaid, sketch};
 use super::timeline::Timeline;
 use crate::{
     Camera, Error, Prepared, Scene, Sources,

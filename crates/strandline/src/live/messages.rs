@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::overlay::{Overlaid, Overlay};
+use super::overlaid::{Overlaid, Overlay};
 use super::timeline::{Pace, TimelineShown};
 use crate::{
     Error, ErrorKind, OutSettings, Scene, Sources, Written,
@@ -110,7 +110,7 @@ impl LoadStage {
     /// All of them, in their order.
     pub const ALL: [Self; 3] = [Self::Growing, Self::Opening, Self::Settling];
 
-    /// What is done, for a person.
+    /// The work that is done, for a person.
     pub fn name(self) -> &'static str {
         match self {
             Self::Growing => "growing hair and body",

@@ -7,6 +7,7 @@ mod films;
 mod keeping;
 mod loaded;
 mod messages;
+mod overlaid;
 mod overlay;
 mod playing;
 mod recorder;
@@ -19,7 +20,7 @@ use std::thread::JoinHandle;
 
 pub use clock::LiveClock;
 pub use messages::{Command, LiveEvent, LoadStage, Shown};
-pub use overlay::{Overlaid, Overlay};
+pub use overlaid::{Overlaid, Overlay};
 pub use timeline::{Pace, TimelineShown};
 
 use drawing_thread::{DrawingThread, Message};

@@ -5,7 +5,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use super::loaded::Loaded;
-use super::overlay::Overlay;
+use super::overlaid::Overlay;
 use super::recorder::Recorder;
 use super::timeline::Range;
 use crate::{

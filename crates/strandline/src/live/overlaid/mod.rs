@@ -1,13 +1,11 @@
-//! Overlays: numbers of the guides, to be drawn over a picture by a window.
+//! Overlays: guides with a number of each point, to be drawn over a picture by a window.
 
-mod hidden;
+pub(super) mod hidden;
 
 use glam::Vec3;
-use strandline_base::par::prelude::*;
 
-use super::loaded::Loaded;
 use crate::{
-    Error, Prepared,
+    Prepared,
     groom::{Guides, LANES, Vec3Lanes},
     sim::{Settings, StrandMethod, rods::RodSettings},
 };
@@ -93,93 +91,16 @@ pub struct Overlaid {
 }
 
 /// Distances \[mm\] over which the colours of contacts run.
-const NEAR: f32 = 5.0;
-
-impl Loaded {
-    /// The guides of the shown moment with the numbers of an overlay.
-    ///
-    /// # Errors
-    /// The GPU that had its points failed; a kept frame cannot be read.
-    pub fn overlaid(&mut self, overlay: Overlay) -> Result<Overlaid, Error> {
-        let world = self.session.points()?.to_vec();
-        let each = self.session.view().guides().points_per_strand();
-        let values = self.values(overlay, &world, each)?;
-        let (points, points_per_strand) = match overlay {
-            Overlay::Roots => (world.iter().step_by(each).copied().collect(), 1),
-            _ => (world, each),
-        };
-        let hidden = self.behind_body(&points);
-        let range = range(overlay, &values);
-        Ok(Overlaid { overlay, points, points_per_strand, hidden, values, range })
-    }
-
-    fn values(&mut self, overlay: Overlay, world: &[Vec3], each: usize) -> Result<Vec<f32>, Error> {
-        Ok(match overlay {
-            Overlay::Guides | Overlay::Roots => Vec::new(),
-            Overlay::Stretch => stretches(world, self.session.view().guides(), self.session.length_asked()),
-            Overlay::Speed => self.speeds()?,
-            Overlay::Group => {
-                let groups = self.session.view().guides().groups().unwrap_or_default();
-                groups.iter().flat_map(|group| std::iter::repeat_n(*group as f32, each)).collect()
-            }
-            Overlay::Contact => self.distances(world),
-            Overlay::Stiffness => stiffnesses(self.session.settings_asked(), self.session.view().guides()),
-        })
-    }
-
-    /// Speeds \[m/s\] from the frame before the shown one to it; 0 where that is not kept.
-    fn speeds(&self) -> Result<Vec<f32>, Error> {
-        let number = self.timeline.playhead;
-        let read = |number: u32| {
-            let frame = self.timeline.frame(number)?;
-            let points = frame.points.as_ref()?.read().map_err(Error::KeptFrames);
-            Some(points.map(|points| (points.to_vec(), frame.origin)))
-        };
-        let before = number.checked_sub(1).and_then(read).transpose()?;
-        let now = read(number).transpose()?;
-        let guides = self.session.view().guides();
-        let shape = [guides.strand_count(), guides.points_per_strand()];
-        let (Some((now, origin)), Some((before, origin_before))) = (now, before) else {
-            return Ok(vec![0.0; shape[0] * shape[1]]);
-        };
-        let (apart, rate) = (origin - origin_before, self.rate() as f32);
-        let speed = |(now, before): (Vec3, Vec3)| (now - before + apart).length() * rate;
-        Ok(in_order(&now, shape).zip(in_order(&before, shape)).map(speed).collect())
-    }
-
-    /// Distances \[mm\] to the nearest solid; none without solids.
-    fn distances(&self, world: &[Vec3]) -> Vec<f32> {
-        let held = self.session.held();
-        let placed = self.solids.placed(held.body.clone());
-        if placed.is_empty() {
-            return Vec::new();
-        }
-        let distance = |point: &Vec3| {
-            let least = 1e3 * placed.at_least(*point - held.origin);
-            // Far points need no exact distance.
-            if least > 2.0 * NEAR { least } else { 1e3 * placed.at(*point - held.origin).0 }
-        };
-        world.par_iter().map(distance).collect()
-    }
-
-    /// True for places \[m\], world space, that the camera of the shown moment sees the body before.
-    fn behind_body(&self, places: &[Vec3]) -> Vec<bool> {
-        let (view, settings, held) = (self.session.view(), self.session.settings(), self.session.held());
-        let Some(mesh) = view.body() else { return vec![false; places.len()] };
-        let aspect = settings.width as f32 / settings.height.max(1) as f32;
-        let silhouette = Silhouette::new(view.camera().seen_from(held.origin), aspect, mesh, held.body);
-        places.iter().map(|place| silhouette.hides(*place - held.origin)).collect()
-    }
-}
+pub(super) const NEAR: f32 = 5.0;
 
 /// Points in the order of strands, of those in blocks of lanes.
-fn in_order(blocks: &[Vec3Lanes], [strands, each]: [usize; 2]) -> impl Iterator<Item = Vec3> + '_ {
+pub(super) fn in_order(blocks: &[Vec3Lanes], [strands, each]: [usize; 2]) -> impl Iterator<Item = Vec3> + '_ {
     let at = move |strand: usize, point: usize| blocks[strand / LANES * each + point].get(strand % LANES);
     (0..strands).flat_map(move |strand| (0..each).map(move |point| at(strand, point)))
 }
 
 /// Stretch \[%\] of the segment before each point of guides that are scaled in length; roots have that of their segment.
-fn stretches(world: &[Vec3], guides: &Guides, scale: f32) -> Vec<f32> {
+pub(super) fn stretches(world: &[Vec3], guides: &Guides, scale: f32) -> Vec<f32> {
     let each = guides.points_per_strand();
     let of = |index: usize| {
         let (strand, point) = (index / each, (index % each).max(1));
@@ -191,7 +112,7 @@ fn stretches(world: &[Vec3], guides: &Guides, scale: f32) -> Vec<f32> {
 }
 
 /// Bending stiffnesses \[nN m^2\] of the points of guides, those of groups by their own settings; none without rods.
-fn stiffnesses(settings: &Settings, guides: &Guides) -> Vec<f32> {
+pub(super) fn stiffnesses(settings: &Settings, guides: &Guides) -> Vec<f32> {
     if settings.strands.method != StrandMethod::Rods {
         return Vec::new();
     }
@@ -217,7 +138,7 @@ fn stiffnesses(settings: &Settings, guides: &Guides) -> Vec<f32> {
 }
 
 /// The numbers of the two ends of the colours.
-fn range(overlay: Overlay, values: &[f32]) -> [f32; 2] {
+pub(super) fn range(overlay: Overlay, values: &[f32]) -> [f32; 2] {
     let finite = || values.iter().copied().filter(|value| value.is_finite());
     let most = finite().fold(0.0, f32::max);
     match overlay {
