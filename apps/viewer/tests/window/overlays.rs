@@ -11,9 +11,11 @@ use crate::person::{Window, scene};
 
 /// Chooses an overlay by its menu, and waits for its numbers.
 fn choose(window: &mut Window, overlay: Overlay) {
-    window.control(Role::ComboBox, "overlay").click_accesskit();
-    window.pass(Vec::new(), None);
-    window.pass(Vec::new(), None);
+    // The list may still be open from the last time.
+    while !window.has_button(overlay.name()) {
+        window.control(Role::ComboBox, "overlay").click_accesskit();
+        (0..4).for_each(|_| window.pass(Vec::new(), None));
+    }
     window.click(overlay.name());
     window.until(overlay.name(), |app| {
         app.shown().and_then(|shown| shown.overlaid.as_ref()).is_some_and(|shown| shown.overlay == overlay)

@@ -173,6 +173,19 @@ impl Window {
         self.harness.step();
     }
 
+    /// Sets the first of several sliders of a name to a value.
+    pub fn slide_first(&mut self, label: &str, value: f64) {
+        self.steps += 1;
+        let slider = self.harness.query_all_by_role_and_label(Role::Slider, label).next();
+        slider.expect(label).set_value_accesskit(value);
+        self.harness.step();
+    }
+
+    /// True where there is a button with this name.
+    pub fn has_button(&self, label: &str) -> bool {
+        self.harness.query_by_role_and_label(Role::Button, label).is_some()
+    }
+
     /// True where a label with this text is seen.
     pub fn has_label(&self, text: &str) -> bool {
         self.harness.query_by_label(text).is_some()

@@ -57,7 +57,7 @@ fn hair_is_coloured_lit_and_blown_and_its_length_style_and_stiffness_are_set() {
     window.toggle("Lights");
     (0..20).for_each(|_| window.pass(Vec::new(), None));
     let before = window.app().seen().lights;
-    window.slide("intensity", 3.0);
+    window.slide_first("intensity", 3.0);
     assert!(window.app().seen().lights != before || before.is_empty());
     finish(&mut window, "light");
     let dial = window.control(Role::Canvas, "wind").rect();
