@@ -12,6 +12,8 @@ use strandline::{
 
 use crate::{App, panels, status_bar, timeline_bar, viewport};
 
+/// Widest panel \[point\].
+const MOST_PANEL: f32 = 400.0;
 /// Interval at which the scene is kept.
 const KEPT_EVERY: Duration = Duration::from_secs(2);
 
@@ -134,7 +136,9 @@ impl App {
         self.follow_files(ui.ctx());
         viewport::keys(self, ui);
         egui::Panel::bottom("status_bar").show(ui, |ui| status_bar::show(self, ui));
-        egui::Panel::left("panels").default_size(290.0).show(ui, |ui| panels::show(self, ui));
+        // Long names beside sliders, which take what room there is, would push the panel over the picture.
+        let side = egui::Panel::left("panels").default_size(290.0).max_size(MOST_PANEL);
+        side.show(ui, |ui| panels::show(self, ui));
         egui::Panel::bottom("timeline").show(ui, |ui| timeline_bar::show(self, ui));
         egui::CentralPanel::default().show(ui, |ui| viewport::show(self, ui));
         self.remember(ui);

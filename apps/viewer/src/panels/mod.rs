@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// Room of a number and a name beside a slider \[point\].
-const BESIDE_SLIDERS: f32 = 190.0;
+const BESIDE_SLIDERS: f32 = 220.0;
 
 pub fn show(app: &mut App, ui: &mut Ui) {
     egui::ScrollArea::vertical().show(ui, |ui| {
@@ -122,7 +122,7 @@ fn keys(ui: &mut Ui) {
         ("left, right", "a frame back, a frame on"),
         ("down, up", "ten frames back, ten on"),
         ("Home, End", "the first and the last kept frame"),
-        ("I, O", "the part that is played begins, ends here"),
+        ("I, O", "the first, last frame that is played"),
         ("alt arrows", "orbit; with shift pan"),
         ("ctrl Z", "undo; with shift redo"),
         ("+ and -", "nearer, farther"),

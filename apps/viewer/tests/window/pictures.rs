@@ -95,6 +95,8 @@ fn whole(folder: &Path) {
     window.until("the hair", |app| app.load_stage().is_some_and(|(_, has_hair)| has_hair));
     window.pass(Vec::new(), None);
     save(&window.drawn(), folder, "loading");
+    let width = window.control(Role::TextInput, "find a setting").rect().right();
+    assert!(width < 400.0, "the panel is {width} wide");
     window.until("frames", |app| app.timeline().good > 20);
     window.press(Key::Space);
     window.settle();
