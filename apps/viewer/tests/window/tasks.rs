@@ -12,9 +12,10 @@ const PAGE: &str = include_str!("../../../../docs/window.md");
 
 /// Steps of a task in the window and in Blender's own interface, as the page has them.
 fn counted(task: &str) -> [usize; 2] {
-    let row = PAGE.lines().find(|line| line.starts_with(&format!("| {task} |"))).expect(task);
-    let numbers: Vec<usize> = row.split('|').filter_map(|cell| cell.trim().parse().ok()).collect();
-    numbers.try_into().expect("two counts")
+    let rows = PAGE.lines().filter(|line| line.starts_with(&format!("| {task} |")));
+    // A table of other things may have a row of that name.
+    let mut counts = rows.map(|row| row.split('|').filter_map(|cell| cell.trim().parse().ok()).collect());
+    counts.find_map(|row: Vec<usize>| row.try_into().ok()).expect(task)
 }
 
 /// Fails unless the steps since the last task are those of the page, and no more than Blender needs.
