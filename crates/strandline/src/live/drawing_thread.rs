@@ -25,7 +25,7 @@ pub(super) enum Message {
     /// The scene of the load with this number.
     Loaded(u64, Result<Box<Loaded>, Error>),
     /// The stage of a load, and the hair as far as it is there.
-    Loading(LiveEvent),
+    Loading(Box<LiveEvent>),
     /// The film with this number is over.
     Recorded(u64, Result<FilmFiles, Error>),
     /// Kept frames are written.
@@ -118,7 +118,7 @@ impl DrawingThread {
         let command = match message {
             Message::Command(command) => command,
             Message::Loaded(load, loaded) => return self.take_scene(playing, load, loaded),
-            Message::Loading(stage) => return self.emit(stage),
+            Message::Loading(stage) => return self.emit(*stage),
             Message::Recorded(film, files) => return self.tell_film(playing, film, files),
             Message::Exported(written) => {
                 return self.emit(written.map_or_else(LiveEvent::from, LiveEvent::Exported));
@@ -202,8 +202,9 @@ impl DrawingThread {
         playing.loading += 1;
         let (own, number) = (self.own.clone(), playing.load);
         let job = move || {
-            let tell =
-                |stage, hair| drop(own.send(Message::Loading(LiveEvent::Loading(number, stage, hair))));
+            let tell = |stage, hair| {
+                drop(own.send(Message::Loading(Box::new(LiveEvent::Loading(number, stage, hair)))))
+            };
             let loaded = catch_unwind(AssertUnwindSafe(|| Loaded::new(&scene, &sources, &tell)))
                 .unwrap_or(Err(Error::WorkerGone))
                 .map(Box::new);
