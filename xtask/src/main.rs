@@ -1,4 +1,4 @@
-//! Project chores: `cargo xtask test | ci | python | bless | docs | names | house | faults | bare | web | long | deny | licences`.
+//! Project chores: `cargo xtask test | ci | python | bless | panels | docs | names | house | faults | bare | web | long | deny | licences`.
 
 #![forbid(unsafe_code)]
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person at a terminal
@@ -33,6 +33,7 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   python   build the extension with the workspace and run the tests of the Python package; makes
            target/python if no Python has what they need
   bless    record the golden pictures again; look at each before you commit it
+  panels   draw the window's panels for docs/window.md anew; look at each before you commit it
   docs     write docs/scene.md and python/strandline/sections.py from the settings table, and
            docs/cli.md from the arguments
   names    check that every stage has one name everywhere, and that comments name their subject first
@@ -60,6 +61,7 @@ enum Chore {
     Test { setup: bool },
     Python,
     Bless,
+    Panels,
     Docs,
     Names,
     House,
@@ -79,6 +81,7 @@ fn main() -> ExitCode {
         Some(Chore::Test { setup }) => run::test(setup),
         Some(Chore::Python) => python::test(),
         Some(Chore::Bless) => run::bless(),
+        Some(Chore::Panels) => run::panels(),
         Some(Chore::Docs) => run::docs(),
         Some(Chore::Names) => names::check(),
         Some(Chore::House) => house::check(),
@@ -110,6 +113,7 @@ fn chore(words: &[&str]) -> Option<Chore> {
         ["test", "--setup"] | ["ci"] => Some(Chore::Test { setup: true }),
         ["python"] => Some(Chore::Python),
         ["bless"] => Some(Chore::Bless),
+        ["panels"] => Some(Chore::Panels),
         ["docs"] => Some(Chore::Docs),
         ["names"] => Some(Chore::Names),
         ["house"] => Some(Chore::House),

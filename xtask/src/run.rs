@@ -190,6 +190,13 @@ pub fn bless() -> bool {
     cargo(&pictures, &[("STRANDLINE_BLESS", "1")], &mut tally)
 }
 
+/// Draws the panels of the window into docs/window.
+pub fn panels() -> bool {
+    let folder = root().join("docs/window").display().to_string();
+    let pictures = ["test", "-p", "strandline-viewer", "--test", "window", "pictures"];
+    cargo(&pictures, &[("STRANDLINE_PANELS", &folder)], &mut Tally::default())
+}
+
 /// Writes docs/scene.md and the sections of the Python package from the settings table, and docs/cli.md from the arguments
 /// of the program.
 pub fn docs() -> bool {

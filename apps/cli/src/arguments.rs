@@ -189,6 +189,9 @@ pub struct ViewOptions {
     /// A .toml scene, a groom, or an .obj, .gltf, .glb, .vrm or .stl body in place of the scene's.
     #[arg(value_name = "FILE")]
     pub file: Option<PathBuf>,
+    /// Load files of the scene again when they change on disk.
+    #[arg(long)]
+    pub watch: bool,
     #[command(flatten)]
     pub inputs: Inputs,
 }

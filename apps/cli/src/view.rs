@@ -1,8 +1,14 @@
 //! `strandline view`: the window.
 
-use strandline::Scene;
+use std::path::PathBuf;
 
-use crate::{arguments::ViewOptions, output, render};
+use strandline::Scene;
+use strandline_viewer::Reload;
+
+use crate::{
+    arguments::{Inputs, ViewOptions},
+    output, render,
+};
 
 /// Opens the window on the inputs of the command line.
 pub fn view(options: &ViewOptions) -> anyhow::Result<()> {
@@ -15,8 +21,19 @@ pub fn view(options: &ViewOptions) -> anyhow::Result<()> {
     if let Some(file) = options.file.as_deref().filter(|file| !strandline::scene::is_file(file)) {
         scene = strandline_viewer::App::scene_of(&scene, file)?;
     }
-    strandline_viewer::open(scene)
-        .map_err(|error| anyhow::anyhow!("no window: {error}; `strandline render` needs no display"))
+    let opened = if options.watch {
+        strandline_viewer::open_watched(scene, reader(inputs))
+    } else {
+        strandline_viewer::open(scene)
+    };
+    opened.map_err(|error| anyhow::anyhow!("no window: {error}; `strandline render` needs no display"))
+}
+
+/// The file of the scene, and its reader with the replacements of the command line.
+fn reader(inputs: Inputs) -> Option<(PathBuf, Reload)> {
+    let file = PathBuf::from(inputs.scene.as_ref()?);
+    let read = move || inputs.scene().map_err(|error| error.to_string());
+    strandline::scene::is_file(&file).then(|| (file, Box::new(read) as Reload))
 }
 
 /// The window on the demo, or its pictures where there is no display.

@@ -6,14 +6,14 @@ use eframe::egui;
 use glam::Vec3;
 use strandline::{
     Backend, Camera, Change, Error, Live, PictureSettings, Scene,
-    edit::{History, is_look, load_look},
+    edit::{History, is_look, load_look, mends},
     format::{Format, endings},
-    live::{Command, Shown},
+    live::{Command, Overlay, Shown},
     mesh::MeshFormat,
     settings::{SettingError, Stroke},
 };
 
-use crate::{compared, export, files, found, messages, playback, recent, rescue, saves};
+use crate::{compared, export, files, found, notes, playback, recent, rescue, saves, stages, typed, watched};
 
 /// The window's state: the scene that plays, and the changes of the user.
 pub struct App {
@@ -48,14 +48,20 @@ pub struct App {
     /// The scene that is on its way, and the number of its command.
     pub(crate) pending: Option<(u64, Box<Scene>)>,
     pub(crate) error: Option<String>,
-    pub(crate) notes: messages::Notes,
+    /// The mends that the last error names.
+    pub(crate) mended: notes::Mended,
+    pub(crate) notes: notes::Notes,
+    /// The overlay over the picture.
+    pub(crate) overlay: Option<Overlay>,
+    /// The stage of the scene that is on its way.
+    pub(crate) loading: Option<stages::Loading>,
+    pub(crate) watch: watched::Watch,
     pub(crate) shown: Option<Shown>,
     pub(crate) texture: Option<egui::TextureHandle>,
     /// Pictures a second, smoothed.
     pub(crate) rate: f32,
     pub(crate) last: Option<Instant>,
-    /// Typed path of a file.
-    pub(crate) path: String,
+    pub(crate) typed: typed::Typed,
     /// True if pictures may be simpler while the hair moves.
     pub(crate) adapts: bool,
     /// True while a video is recorded, and the number of videos that are being finished.
@@ -107,6 +113,11 @@ pub enum Tool {
     Brush,
 }
 
+/// Asks the window for another pass, once it is there. An immediate one would be two passes, the second one useless.
+fn waker(context: Arc<OnceLock<egui::Context>>) -> impl Fn() + Send + 'static {
+    move || context.get().into_iter().for_each(|context| context.request_repaint_after(SOON))
+}
+
 impl App {
     /// Radius of the hand \[m\] to begin with.
     pub(crate) const RADIUS: f32 = 0.012;
@@ -117,12 +128,7 @@ impl App {
     /// The system gives no thread.
     pub fn new(scene: Scene) -> Result<Self, Error> {
         let context = Arc::new(OnceLock::<egui::Context>::new());
-        let known = context.clone();
-        // An immediate repaint would be two passes, the second one useless.
-        let wake = move || {
-            known.get().into_iter().for_each(|context| context.request_repaint_after(SOON));
-        };
-        let live = Live::new(scene.clone(), wake)?;
+        let live = Live::new(scene.clone(), waker(context.clone()))?;
         live.send(Command::Adapt(true));
         let app = Self {
             history: History::new(&scene),
@@ -152,12 +158,16 @@ impl App {
             keeps_view: false,
             pending: Some((1, Box::new(scene))),
             error: None,
-            notes: messages::Notes::default(),
+            mended: notes::Mended::default(),
+            notes: notes::Notes::default(),
+            overlay: None,
+            loading: None,
+            watch: watched::Watch::default(),
             shown: None,
             texture: None,
             rate: 0.0,
             last: None,
-            path: String::new(),
+            typed: typed::Typed::default(),
             adapts: true,
             recording: false,
             finishing: 0,
@@ -219,7 +229,8 @@ impl App {
 
     /// Shows a line for a while.
     pub(crate) fn note(&mut self, text: String) {
-        self.notes.add(text);
+        let mends = mends(&text, &self.scene);
+        self.notes.add(text, mends);
     }
 
     /// Has pictures drawn as the scene says, with something behind them.
@@ -261,9 +272,15 @@ impl App {
         self.pending.is_some()
     }
 
+    /// Loads another scene, as if its file had been opened.
+    pub fn open_scene(&mut self, scene: Scene) {
+        self.load(scene);
+    }
+
     /// Loads another scene; until it is there the old one stays and the controls change it.
     pub(crate) fn load(&mut self, mut scene: Scene) {
-        self.error = None;
+        (self.error, self.mended.failed) = (None, None);
+        self.watch.note(&scene);
         // The window's size and the devices that the program was started with stay.
         let PictureSettings { width, height, .. } = self.scene.picture;
         (scene.picture.width, scene.picture.height) = (width, height);
@@ -291,6 +308,11 @@ impl App {
             Ok(_) if self.pending.is_none() && is_look(file) => self.load_look(file),
             Ok(scene) => {
                 self.recent.add(file);
+                if strandline::scene::is_file(file) {
+                    let path = file.to_owned();
+                    let reload = move || Scene::load(&path).map_err(|error| error.to_string());
+                    self.watch.scene_file(file, Box::new(reload));
+                }
                 self.load(scene);
             }
             Err(error) => self.error = Some(error.to_string()),

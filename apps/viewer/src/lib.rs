@@ -15,24 +15,34 @@ mod files;
 mod finding;
 mod found;
 mod libraries;
+mod loading;
 mod looks;
 mod messages;
+mod notes;
+mod overlays;
 mod panels;
+mod path_field;
 mod playback;
 mod recent;
 mod rescue;
 mod saves;
 mod saving;
 mod sight;
+mod stages;
 mod status_bar;
 mod timeline_bar;
+mod typed;
 mod undoing;
 mod viewport;
+mod watch;
+mod watched;
 mod wind;
 mod window;
 
 pub use app::{App, Tool};
+use std::path::PathBuf;
 use std::sync::Arc;
+pub use watched::Reload;
 
 use eframe::{
     egui,
@@ -65,6 +75,21 @@ pub enum ViewError {
 /// # Errors
 /// There is no display, or no device that draws the window.
 pub fn open(scene: Scene) -> Result<(), ViewError> {
+    open_app(App::new(scene).map_err(ViewError::NotStarted)?)
+}
+
+/// As [`open`], with files that are loaded again when they change on disk; `file` is that of the scene with its reader.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_watched(scene: Scene, file: Option<(PathBuf, Reload)>) -> Result<(), ViewError> {
+    let mut app = App::new(scene).map_err(ViewError::NotStarted)?;
+    app.watch(file);
+    open_app(app)
+}
+
+/// Opens the window of an app. Hair grows while the system makes it.
+fn open_app(mut app: App) -> Result<(), ViewError> {
     let viewport = egui::ViewportBuilder::default()
         .with_title("strandline")
         .with_inner_size([1280.0, 800.0])
@@ -74,8 +99,6 @@ pub fn open(scene: Scene) -> Result<(), ViewError> {
     if let WgpuSetup::CreateNew(setup) = &mut options.wgpu_options.wgpu_setup {
         setup.device_descriptor = Arc::new(device);
     }
-    // Hair grows while the system makes the window.
-    let mut app = App::new(scene).map_err(ViewError::NotStarted)?;
     app.recent = recent::Recent::of_user();
     let kept = app.kept.clone();
     let make = |context: &eframe::CreationContext| {

@@ -3,10 +3,17 @@
 use std::path::Path;
 
 use eframe::egui::Ui;
+use strandline::Camera;
 use strandline::edit::{load_look, save_look};
+use strandline::math::atan2;
 use strandline::scene::{CameraKeyframe, Interpolation};
 
-use crate::{App, controls::button, files::Wanted, viewport};
+use crate::{
+    App,
+    controls::{button, slide_in},
+    files::Wanted,
+    viewport,
+};
 
 impl App {
     /// Saves the look; into a free file of the folder when no path is given.
@@ -61,8 +68,23 @@ pub fn files(app: &mut App, ui: &mut Ui) {
     });
 }
 
-/// Views that are kept, and the turntable.
+/// Height of the film behind a lens \[mm\]: 36 x 24.
+const FILM: f32 = 24.0;
+
+/// The lens of the view: its focal length for a field of view, and the other way round.
+fn lens(app: &mut App, ui: &mut Ui) {
+    let focal = |camera: &Camera| 0.5 * FILM * camera.focal();
+    let (mut now, default) = (focal(&app.camera), focal(&app.home));
+    let tip = "focal length [mm] on film of 36 x 24 mm; more: a narrower view";
+    if slide_in(ui, (&mut now, default), 8.0..=300.0, "lens", tip) {
+        let field_of_view = 2.0 * atan2(0.5 * FILM, now.max(2.0)).to_degrees();
+        viewport::look(app, Camera { field_of_view, ..app.camera });
+    }
+}
+
+/// Views that are kept, the lens, and the turntable.
 pub fn views(app: &mut App, ui: &mut Ui) {
+    lens(app, ui);
     let mut gone = None;
     ui.horizontal_wrapped(|ui| {
         if button(ui, "Keep view", "adds the present view to this list") {

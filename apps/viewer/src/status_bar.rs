@@ -3,13 +3,11 @@
 use eframe::egui;
 use strandline::file::counted;
 
-use crate::App;
+use crate::{App, loading};
 
 pub fn show(app: &App, ui: &mut egui::Ui) {
     ui.horizontal_wrapped(|ui| {
-        if app.is_loading() {
-            ui.label("loading ...");
-        }
+        loading::progress(app, ui);
         let Some(shown) = &app.shown else { return };
         ui.label(format!("{:.1} pictures/s", app.rate)).on_hover_text("pictures a second, smoothed");
         let [simulated, drawn] = &shown.places;

@@ -1,6 +1,6 @@
 //! The timeline under the picture: frames that are kept, stale ones, the playhead, and the part that is played.
 
-use eframe::egui::{self, Color32, Rect, Sense, Stroke, Ui, WidgetInfo};
+use eframe::egui::{self, Color32, DragValue, Rect, Sense, Stroke, Ui, WidgetInfo, accesskit::Role};
 use strandline::live::{Command, Pace, TimelineShown};
 
 use crate::{App, controls::button, playback::Playback};
@@ -100,11 +100,19 @@ pub fn show(app: &mut App, ui: &mut Ui) {
 }
 
 /// Frame, time and room of the timeline.
-fn words(app: &App, timeline: &TimelineShown, ui: &mut Ui) {
+fn words(app: &mut App, timeline: &TimelineShown, ui: &mut Ui) {
     let playhead = app.playhead();
     let seconds = f64::from(playhead) / timeline.rate.max(1.0);
-    ui.label(format!("frame {playhead}, {seconds:.2} s"))
-        .on_hover_text("frame n is picture n - 1 of `render`, which begins a frame after rest");
+    let mut frame = playhead;
+    ui.label("frame");
+    let tip = "the shown frame; type one to go there\nframe n is picture n - 1 of `render`, which begins a frame after rest\ndefault 0";
+    let field = DragValue::new(&mut frame).range(timeline.first..=timeline.last.max(timeline.first));
+    let response = ui.add(field).on_hover_text(tip);
+    response.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, "frame"));
+    if response.changed() && frame != playhead {
+        app.seek(frame);
+    }
+    ui.label(format!("{seconds:.2} s"));
     if timeline.good < timeline.last {
         ui.label(format!("stale after {}", timeline.good))
             .on_hover_text("something was changed there: play on from it");

@@ -8,7 +8,7 @@ use crate::{
     App, Tool, brushing, compare,
     controls::button,
     files::Wanted,
-    messages,
+    loading, messages, overlays,
     sight::{points_of, ray},
     wind,
 };
@@ -96,6 +96,9 @@ fn plain_keys(app: &mut App, pressed: impl Fn(Key) -> bool) {
     if pressed(Key::G) {
         app.tool = if app.tool == Tool::Grab { Tool::Orbit } else { Tool::Grab };
     }
+    if pressed(Key::L) {
+        app.next_overlay();
+    }
     if pressed(Key::V) {
         app.record();
     }
@@ -134,17 +137,8 @@ fn zoom(app: &mut App, share: f32) {
 pub fn show(app: &mut App, ui: &mut egui::Ui) {
     let room = ui.available_rect_before_wrap();
     fit(app, room.size(), ui.ctx().pixels_per_point());
-    messages::show(&mut app.notes, &mut app.error, ui, room);
-    let Some(texture) = &app.texture else {
-        // No spinner: it would take time from the loading.
-        let text = if app.is_loading() || app.error.is_none() {
-            "growing hair ..."
-        } else {
-            "nothing to show yet: open a scene"
-        };
-        ui.centered_and_justified(|ui| ui.label(text));
-        return;
-    };
+    messages::show(app, ui, room);
+    let Some(texture) = &app.texture else { return loading::show(app, ui, room) };
     // A picture whose size stays, as a video's does, keeps its shape too.
     let shape = texture.size_vec2();
     let share = (room.width() / shape.x).min(room.height() / shape.y);
@@ -154,6 +148,7 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
     let image = egui::Image::new(texture).fit_to_exact_size(place.size()).sense(egui::Sense::drag());
     let response = ui.put(place, image);
     compare::show(app, ui, place, own);
+    overlays::show(app, ui, place, room);
     mouse(app, ui, &response);
     if response.hovered() {
         let scroll = ui.input(|input| input.smooth_scroll_delta().y);
@@ -167,7 +162,7 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
 
 /// Tools of the mouse, in the upper left corner of the picture.
 fn tools(app: &mut App, ui: &mut egui::Ui, room: Rect) {
-    let corner = Rect::from_min_size(room.min + egui::vec2(8.0, 8.0), egui::vec2(260.0, 24.0));
+    let corner = Rect::from_min_size(room.min + egui::vec2(8.0, 8.0), egui::vec2(480.0, 24.0));
     let mut row = ui.new_child(egui::UiBuilder::new().max_rect(corner));
     row.horizontal(|ui| {
         let tools = [
@@ -181,6 +176,7 @@ fn tools(app: &mut App, ui: &mut egui::Ui, room: Rect) {
         if app.camera != app.home && button(ui, "View", "back to the view of the scene: F") {
             look(app, app.home);
         }
+        overlays::menu(app, ui);
     });
 }
 

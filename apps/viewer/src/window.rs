@@ -12,6 +12,8 @@ use strandline::{
 
 use crate::{App, panels, status_bar, timeline_bar, viewport};
 
+/// Widest panel \[point\].
+const MOST_PANEL: f32 = 400.0;
 /// Interval at which the scene is kept.
 const KEPT_EVERY: Duration = Duration::from_secs(2);
 
@@ -29,10 +31,12 @@ impl App {
                     self.take_scene(number, *scene, camera, bounds);
                     notes.into_iter().for_each(|note| self.note(note));
                 }
+                LiveEvent::Loading(number, stage, hair) => self.take_stage(number, stage, hair),
                 LiveEvent::Note(note) => self.note(note),
                 LiveEvent::NotLoaded(number, kind, error) => {
                     // The previous scene still plays.
-                    self.pending.take_if(|(pending, _)| *pending == number);
+                    self.mended.failed =
+                        self.pending.take_if(|(pending, _)| *pending == number).map(|(_, scene)| scene);
                     (self.restoring, self.keeps_view) = (false, false);
                     self.error = Some(with_remedy(kind, error));
                     if self.shown.is_none() {
@@ -79,6 +83,7 @@ impl App {
             viewport::look(self, before);
         }
         self.notes.clear();
+        self.watch.reloads.take().into_iter().for_each(|note| self.note(note));
         self.live.send(Command::Play(self.playing));
     }
 
@@ -128,9 +133,12 @@ impl App {
         self.take_saved();
         self.take_exported();
         self.keep_scene();
+        self.follow_files(ui.ctx());
         viewport::keys(self, ui);
         egui::Panel::bottom("status_bar").show(ui, |ui| status_bar::show(self, ui));
-        egui::Panel::left("panels").default_size(290.0).show(ui, |ui| panels::show(self, ui));
+        // Long names beside sliders, which take what room there is, would push the panel over the picture.
+        let side = egui::Panel::left("panels").default_size(290.0).max_size(MOST_PANEL);
+        side.show(ui, |ui| panels::show(self, ui));
         egui::Panel::bottom("timeline").show(ui, |ui| timeline_bar::show(self, ui));
         egui::CentralPanel::default().show(ui, |ui| viewport::show(self, ui));
         self.remember(ui);
@@ -147,7 +155,7 @@ impl eframe::App for App {
 fn with_remedy(kind: ErrorKind, error: String) -> String {
     match kind {
         ErrorKind::DeviceLost | ErrorKind::OutOfMemory | ErrorKind::Refused => {
-            format!("{error}\nThe CPU can continue: choose cpu as the device.")
+            format!("{error}\nThe CPU can continue: `--backend cpu`.")
         }
         _ => error,
     }

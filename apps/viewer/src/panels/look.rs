@@ -54,6 +54,10 @@ fn colours(look: &mut Look, base: &Look, ui: &mut Ui) {
             slide(ui, (&mut own.eumelanin, base.eumelanin), &rows.eumelanin, "eumelanin");
             slide(ui, (&mut own.pheomelanin, base.pheomelanin), &rows.pheomelanin, "pheomelanin");
             slide(ui, (&mut own.tip_pigment, base.tip_pigment), &rows.tip_pigment, "at the tip");
+            let before = look.root_color;
+            if colour(ui, (&mut look.root_color, before), &Look::ROWS.root_color, "own colour") {
+                (own.pigment, look.tip_color) = (Pigment::Color, look.root_color);
+            }
         }
     }
     if by_color {

@@ -8,7 +8,7 @@ mod save;
 mod scene;
 mod simulation;
 
-use eframe::egui::{self, Ui};
+use eframe::egui::{self, ThemePreference, Ui};
 use strandline::{Change, live::Command};
 
 use crate::{
@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// Room of a number and a name beside a slider \[point\].
-const BESIDE_SLIDERS: f32 = 190.0;
+const BESIDE_SLIDERS: f32 = 220.0;
 
 pub fn show(app: &mut App, ui: &mut Ui) {
     egui::ScrollArea::vertical().show(ui, |ui| {
@@ -40,6 +40,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
         });
         section(ui, "Save", false, |ui| save::show(app, ui));
         section(ui, "Steps", false, |ui| undoing::show(app, ui));
+        section(ui, "Window", false, window);
         section(ui, "Keys", false, keys);
     });
 }
@@ -81,6 +82,37 @@ fn play(app: &mut App, ui: &mut Ui) {
     });
 }
 
+/// Colours and size of the window's own controls.
+fn window(ui: &mut Ui) {
+    ui.horizontal(|ui| {
+        let mut theme = ui.ctx().options(|options| options.theme_preference);
+        let before = theme;
+        for (value, name, tip) in [
+            (ThemePreference::System, "as the system", "light or dark as the desktop says\ndefault"),
+            (ThemePreference::Dark, "dark", "dark panels"),
+            (ThemePreference::Light, "light", "light panels"),
+        ] {
+            ui.radio_value(&mut theme, value, name).on_hover_text(tip);
+        }
+        if theme != before {
+            ui.ctx().set_theme(theme);
+        }
+    });
+    ui.horizontal(|ui| {
+        let factor = ui.ctx().zoom_factor();
+        for (name, next, tip) in [
+            ("smaller", factor / 1.1, "smaller texts and controls"),
+            ("larger", factor * 1.1, "larger texts and controls, for displays with many pixels"),
+            ("own size", 1.0, "the size that the display asks for"),
+        ] {
+            if button(ui, name, tip) {
+                ui.ctx().set_zoom_factor(next.clamp(0.5, 4.0));
+            }
+        }
+        ui.label(format!("{:.0} %", 100.0 * factor));
+    });
+}
+
 fn keys(ui: &mut Ui) {
     let keys = [
         ("space", "play, pause"),
@@ -90,11 +122,12 @@ fn keys(ui: &mut Ui) {
         ("left, right", "a frame back, a frame on"),
         ("down, up", "ten frames back, ten on"),
         ("Home, End", "the first and the last kept frame"),
-        ("I, O", "the part that is played begins, ends here"),
+        ("I, O", "the first, last frame that is played"),
         ("alt arrows", "orbit; with shift pan"),
         ("ctrl Z", "undo; with shift redo"),
         ("+ and -", "nearer, farther"),
         ("F", "the view of the scene"),
+        ("L", "the next overlay"),
         ("V", "begin or end a video"),
         ("ctrl O", "open a file"),
         ("ctrl S", "save the scene"),

@@ -48,8 +48,10 @@ fn moving(app: &mut App, ui: &mut Ui) {
     });
     ui.horizontal(|ui| {
         for what in What::ALL {
-            ui.radio_value(&mut wanted.what, what, what.name());
+            ui.radio_value(&mut wanted.what, what, what.name()).on_hover_text("strands that are written");
         }
+    });
+    ui.horizontal(|ui| {
         for target in Target::ALL {
             ui.radio_value(&mut wanted.target, target, target.name())
                 .on_hover_text("units and axes of a .usda");

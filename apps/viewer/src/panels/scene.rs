@@ -3,7 +3,12 @@
 use eframe::egui::{self, Ui};
 use strandline::{Scene, Style};
 
-use crate::{App, controls::button, files::Wanted};
+use crate::{
+    App,
+    controls::{button, tick_of},
+    files::Wanted,
+    path_field,
+};
 
 pub fn show(app: &mut App, ui: &mut Ui) {
     let mut chosen = app.scene.style.style;
@@ -50,15 +55,12 @@ pub fn show(app: &mut App, ui: &mut Ui) {
             app.open_file(&file);
         }
     }
-    ui.horizontal(|ui| {
-        let field =
-            egui::TextEdit::singleline(&mut app.path).hint_text("path of a file").desired_width(180.0);
-        let tip = "path of a scene, groom or body\ndefault none";
-        let entered = ui.add(field).on_hover_text(tip).lost_focus()
-            && ui.input(|input| input.key_pressed(egui::Key::Enter));
-        if button(ui, "Load", "loads the file") || entered {
-            app.open_file(&std::path::PathBuf::from(app.path.trim()));
-        }
-    });
+    path_field::show(app, ui);
+    let before = app.watch.on;
+    let tip = "files of the scene that change on disk are loaded again: --watch";
+    tick_of(ui, (&mut app.watch.on, false), "watch files", tip);
+    if app.watch.on && !before {
+        app.watch(None);
+    }
     ui.small("Drop a .toml scene, a groom (.hair, .tfx, .ply, .npz ...) or a body (.obj, .glb, .stl ...) on the window.");
 }

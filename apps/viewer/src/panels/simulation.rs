@@ -68,7 +68,7 @@ fn rods(rods: &mut RodSettings, base: &RodSettings, ui: &mut Ui) {
     for (place, name) in ["stiffness at root", "in the middle", "at the tip"].into_iter().enumerate() {
         slide(ui, (&mut rods.profile[place], base.profile[place]), &rows.profile, name);
     }
-    slide(ui, (&mut rods.damping, base.damping), &rows.damping, "bends' damping, s");
+    slide(ui, (&mut rods.damping, base.damping), &rows.damping, "bend damping, s");
     slide(ui, (&mut rods.substeps, base.substeps), &rows.substeps, "substeps");
     slide(ui, (&mut rods.newton_steps, base.newton_steps), &rows.newton_steps, "Newton steps");
 }

@@ -9,7 +9,7 @@ use strandline::low_level::body::{Mannequin, Mesh};
 use crate::person::{Window, hair};
 
 /// The built-in head at another place, as text of a format: its ending, and its content.
-fn head(ending: &str, place: Vec3) -> String {
+pub fn head(ending: &str, place: Vec3) -> String {
     let Mesh { positions, triangles, .. } = Mannequin::new().mesh();
     let corner = |at: u32| positions[at as usize] + place;
     let mut text = String::new();

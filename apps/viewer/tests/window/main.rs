@@ -1,10 +1,14 @@
 //! The window as a person uses it, without a display: its contents are laid out, found by their labels and fed events.
 
 mod brushes;
+mod drawn;
 mod loading;
 mod measured;
+mod overlays;
 mod panels;
 mod person;
+mod pictures;
+mod tasks;
 mod timeline;
 
 use std::time::Duration;

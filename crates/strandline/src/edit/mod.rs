@@ -1,15 +1,17 @@
 //! Editing of scenes by a person, without a window: undo and redo, looks as files, settings found by name, numbers with
-//! units.
+//! units, the mends that messages name.
 
 mod changes;
 mod history;
 mod look_file;
+mod mends;
 mod search;
 mod units;
 
 pub use changes::{changes, difference};
 pub use history::{History, Step};
 pub use look_file::{is_look, load_look, save_look};
+pub use mends::{Mend, mends};
 pub use search::{Found, find, value, with_value};
 pub use toml::Value;
 pub use units::quantity;

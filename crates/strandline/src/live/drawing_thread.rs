@@ -24,6 +24,8 @@ pub(super) enum Message {
     Command(Command),
     /// The scene of the load with this number.
     Loaded(u64, Result<Box<Loaded>, Error>),
+    /// The stage of a load, and the hair as far as it is there.
+    Loading(Box<LiveEvent>),
     /// The film with this number is over.
     Recorded(u64, Result<FilmFiles, Error>),
     /// Kept frames are written.
@@ -116,6 +118,7 @@ impl DrawingThread {
         let command = match message {
             Message::Command(command) => command,
             Message::Loaded(load, loaded) => return self.take_scene(playing, load, loaded),
+            Message::Loading(stage) => return self.emit(*stage),
             Message::Recorded(film, files) => return self.tell_film(playing, film, files),
             Message::Exported(written) => {
                 return self.emit(written.map_or_else(LiveEvent::from, LiveEvent::Exported));
@@ -132,6 +135,7 @@ impl DrawingThread {
             Command::Play(false) => playing.playing = false,
             Command::Step => playing.steps += u32::from(!playing.playing),
             Command::Adapt(adapts) => playing.adapts = adapts,
+            Command::Overlay(overlay) => (playing.overlay, playing.stale) = (overlay, true),
             Command::Save(scene, load, path) => self.save(playing, *scene, load, path),
             Command::Record(folder) => self.record(playing, &folder),
             Command::StopRecording => playing.finishing.extend(playing.recorder.take().map(Recorder::finish)),
@@ -198,7 +202,10 @@ impl DrawingThread {
         playing.loading += 1;
         let (own, number) = (self.own.clone(), playing.load);
         let job = move || {
-            let loaded = catch_unwind(AssertUnwindSafe(|| Loaded::new(&scene, &sources)))
+            let tell = |stage, hair| {
+                drop(own.send(Message::Loading(Box::new(LiveEvent::Loading(number, stage, hair)))))
+            };
+            let loaded = catch_unwind(AssertUnwindSafe(|| Loaded::new(&scene, &sources, &tell)))
                 .unwrap_or(Err(Error::WorkerGone))
                 .map(Box::new);
             // Nobody waits for it any more when the window is closed.
@@ -330,7 +337,12 @@ impl DrawingThread {
     }
 
     fn show(&self, playing: &mut Playing, picture: Picture, drawing: FrameReport) {
-        let Some(loaded) = playing.scene.as_deref() else { return };
+        let Some(loaded) = playing.scene.as_deref_mut() else { return };
+        let overlaid = playing.overlay.map(|overlay| loaded.overlaid(overlay)).transpose();
+        let overlaid = overlaid.unwrap_or_else(|error| {
+            self.emit(error.into());
+            None
+        });
         let session = &loaded.session;
         playing.frame += 1;
         let shown = Shown {
@@ -343,6 +355,7 @@ impl DrawingThread {
             camera: Some(*session.view().camera()),
             follows_camera: session.follows_camera(),
             timeline: loaded.timeline.shown(loaded.rate()),
+            overlaid: overlaid.map(Arc::new),
             drawing,
             step: playing.step.take(),
             grabbed: session.grabbed(),

@@ -3,11 +3,16 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use std::sync::Arc;
+
 use strandline_base::WholeFile;
 
+use super::messages::LoadStage;
+use super::overlaid::{Overlaid, sketch};
 use super::timeline::Timeline;
 use crate::{
-    Error, Prepared, Scene, Sources,
+    Camera, Error, Prepared, Scene, Sources,
+    body::Solids,
     session::worker::Worker,
     session::{Session, Simulation},
 };
@@ -21,22 +26,34 @@ pub(super) struct Loaded {
     pub timeline: Timeline,
     /// True where the hair goes back to its beginning with the tasks that were started.
     pub(super) resets: bool,
+    /// The solids that hair hits.
+    pub(super) solids: Solids,
 }
 
+/// Receiver of the stage that a load comes to, with the hair and its camera once they are there.
+pub(super) type Tell<'a> = &'a dyn Fn(LoadStage, Option<(Arc<Overlaid>, Camera)>);
+
 impl Loaded {
-    pub fn new(scene: &Scene, sources: &Sources) -> Result<Self, Error> {
+    pub fn new(scene: &Scene, sources: &Sources, tell: Tell) -> Result<Self, Error> {
+        tell(LoadStage::Growing, None);
         let mut prepared = Prepared::from_sources(scene, sources)?;
         let mut notes = std::mem::take(&mut prepared.notes);
+        let aspect = scene.picture.width as f32 / scene.picture.height.max(1) as f32;
+        let sketched = (Arc::new(sketch(&prepared, aspect)), prepared.camera(aspect));
+        tell(LoadStage::Opening, Some(sketched));
         let mut session = Session::open(prepared, scene.devices)?;
+        tell(LoadStage::Settling, None);
         session.settle()?;
         notes.extend(session.take_notes());
         session.follow_camera();
+        let solids = session.colliders().iter().cloned();
+        let solids = Solids::new(solids.map(|solid| (solid, 0.0)));
         let mut session = session.beside()?;
         session.keep_frames();
         let film = session.scene().film;
         let last = film.frames - u32::from(session.scene().groom.pose.is_some());
         let timeline = Timeline::new(&session.scene().timeline, last);
-        let mut loaded = Self { session, notes, timeline, resets: false };
+        let mut loaded = Self { session, notes, timeline, resets: false, solids };
         let note = loaded.begin()?;
         loaded.notes.extend(note);
         Ok(loaded)

@@ -2,7 +2,9 @@
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
+use std::sync::Arc;
 
+use super::overlaid::{Overlaid, Overlay};
 use super::timeline::{Pace, TimelineShown};
 use crate::{
     Error, ErrorKind, OutSettings, Scene, Sources, Written,
@@ -42,6 +44,8 @@ pub enum Command {
     /// Draws simpler pictures while the hair moves or is changed and a full one takes longer than
     /// 80 ms; off to begin with. What stands still is drawn in full after a moment.
     Adapt(bool),
+    /// Gives pictures the numbers of an overlay, or none to begin with.
+    Overlay(Option<Overlay>),
     /// Writes every frame from the next one on, in full, to a folder: as pictures and a video. Frames are
     /// those of the timeline, however long they take. The size of the pictures stays.
     Record(PathBuf),
@@ -77,6 +81,8 @@ pub struct Shown {
     pub follows_camera: bool,
     /// The frames that are kept, and the one that is shown.
     pub timeline: TimelineShown,
+    /// The guides with the numbers of the overlay, where there is one.
+    pub overlaid: Option<Arc<Overlaid>>,
     /// Cost of the picture.
     pub drawing: FrameReport,
     /// The last step that was not reported before.
@@ -89,12 +95,40 @@ pub struct Shown {
     pub places: [String; 2],
 }
 
+/// A part of loading a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LoadStage {
+    /// Files are read, hair and body grown.
+    Growing,
+    /// The simulation and the renderer are made.
+    Opening,
+    /// The hair comes to rest.
+    Settling,
+}
+
+impl LoadStage {
+    /// All of them, in their order.
+    pub const ALL: [Self; 3] = [Self::Growing, Self::Opening, Self::Settling];
+
+    /// The work that is done, for a person.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Growing => "growing hair and body",
+            Self::Opening => "making the simulation",
+            Self::Settling => "letting the hair come to rest",
+        }
+    }
+}
+
 /// An event of a [`Live`](crate::Live).
 #[derive(Clone, Debug, PartialEq)]
 pub enum LiveEvent {
     /// The scene of the command with this number is there: with what it left open chosen to fit its groom, its
     /// camera, the box around hair and body \[m\], and what a person should read.
     Loaded(u64, Box<Scene>, Camera, Aabb, Vec<String>),
+    /// The scene of the command with this number is so far; with the hair as it hangs and the camera that sees it, once they
+    /// are there.
+    Loading(u64, LoadStage, Option<(Arc<Overlaid>, Camera)>),
     /// A note, human-readable.
     Note(String),
     /// The scene of the command with this number could not be loaded: kind and text of the error. The old scene stays.

@@ -7,6 +7,8 @@ mod films;
 mod keeping;
 mod loaded;
 mod messages;
+mod overlaid;
+mod overlay;
 mod playing;
 mod recorder;
 mod timeline;
@@ -17,7 +19,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
 pub use clock::LiveClock;
-pub use messages::{Command, LiveEvent, Shown};
+pub use messages::{Command, LiveEvent, LoadStage, Shown};
+pub use overlaid::{Overlaid, Overlay};
 pub use timeline::{Pace, TimelineShown};
 
 use drawing_thread::{DrawingThread, Message};

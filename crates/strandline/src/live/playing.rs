@@ -5,6 +5,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use super::loaded::Loaded;
+use super::overlaid::Overlay;
 use super::recorder::Recorder;
 use super::timeline::Range;
 use crate::{
@@ -65,6 +66,8 @@ pub(super) struct Playing {
     /// True where the last picture was simpler; the simpler ones that are drawn.
     pub draft: bool,
     pub drafts: Drafts,
+    /// The overlay of pictures.
+    pub overlay: Option<Overlay>,
     pub frame: u64,
     pub received: u64,
     /// Number of the last load, and of the scene that plays; loads that are under way.
@@ -97,6 +100,7 @@ impl Playing {
         tried: false,
         draft: false,
         drafts: Drafts::START,
+        overlay: None,
         frame: 0,
         received: 0,
         load: 0,

@@ -133,6 +133,16 @@ impl<E: Executor> Session<E> {
         self.start(Task::Settings(settings), false, 0)
     }
 
+    /// Settings of the simulation that were last asked for.
+    pub fn settings_asked(&self) -> &Settings {
+        self.kept.settings.as_deref().unwrap_or(&self.scene.simulation)
+    }
+
+    /// Length of the strands over their own that was last asked for.
+    pub fn length_asked(&self) -> f32 {
+        self.kept.length.unwrap_or(self.scene.groom.length)
+    }
+
     /// Another length of all strands; as with settings, one that is refused is not asked for again.
     pub(super) fn set_length(&mut self, scale: f32) -> Result<(), Error> {
         if State::LENGTH_SCALES.contains(&scale) {

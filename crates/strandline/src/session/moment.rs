@@ -58,6 +58,11 @@ impl Moment {
         &self.positions
     }
 
+    /// True where the points are on the host.
+    pub fn is_home(&self) -> bool {
+        self.on_host || self.device.is_none()
+    }
+
     /// Brings the points to the host, which waits for the device that has them.
     ///
     /// # Errors

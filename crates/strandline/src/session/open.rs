@@ -183,6 +183,11 @@ impl Session<Inline> {
         self.executor.simulation()
     }
 
+    /// The solids that hair hits, seen from the origin.
+    pub fn colliders(&self) -> &[Collider] {
+        self.executor.simulation().engine.model().colliders()
+    }
+
     /// The simulation, to be changed.
     pub fn simulation_mut(&mut self) -> &mut Simulation {
         self.executor.simulation_mut()

@@ -190,7 +190,9 @@ impl<E: Executor> Session<E> {
     /// As [`Session::pick`].
     pub fn points_into(&mut self, points: &mut [Vec3]) -> Result<(), Error> {
         let Self { executor, shown, view, .. } = self;
-        executor.with(|simulation| simulation.bring_home(shown))?;
+        if !shown.is_home() {
+            executor.with(|simulation| simulation.bring_home(shown))?;
+        }
         let (each, origin) = (view.guides.points_per_strand(), shown.origin);
         assert_eq!(points.len(), view.guides.strand_count() * each, "room for every point");
         let blocks = points.par_chunks_mut(LANES * each).zip(shown.positions().par_chunks(each));

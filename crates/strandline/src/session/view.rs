@@ -1,7 +1,7 @@
 //! Renderer of a session, with view, look and lights.
 
 use crate::{
-    body::Aabb,
+    body::{Aabb, Mesh},
     gpu::Gpu,
     groom::Guides,
     render::{BodyLook, Camera, FrameInput, FrameReport, LevelOfDetail, Light, Look, Picture, RenderError},
@@ -34,6 +34,11 @@ impl View {
     /// The box around hair and body at rest \[m\], head space.
     pub fn bounds(&self) -> Aabb {
         self.bounds
+    }
+
+    /// The body that is drawn, head space.
+    pub fn body(&self) -> Option<&Mesh> {
+        self.painter.mesh()
     }
 
     /// The view.

@@ -149,6 +149,13 @@ impl RodSettings {
         rods
     }
 
+    /// Bending stiffness E I \[N m^2\] of what a guide stands for, about the weaker axis of its section, at a share of the
+    /// length from the root.
+    pub fn bend_stiffness(&self, share: f32) -> f32 {
+        let section = self.material().section();
+        (section.bend[0].min(section.bend[1]) * section.along.stiffness(f64::from(share))) as f32
+    }
+
     /// Mass per length at the root of what a guide stands for \[kg/m\].
     pub fn mass_per_length(&self) -> f32 {
         self.material().section().mass as f32

@@ -12,7 +12,7 @@ fn loaded() -> Loaded {
     scene.body.spacing = 0.01;
     scene.devices = Backend::Cpu.into();
     scene.motion.name = crate::scene::MotionName::Shake;
-    Loaded::new(&scene, &Box::default()).unwrap()
+    Loaded::new(&scene, &Box::default(), &|_, _| {}).unwrap()
 }
 
 /// The middle one of some times \[s\].
