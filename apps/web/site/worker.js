@@ -43,7 +43,7 @@ let rested = 0;
 let still = false;
 let told = 0;
 let painted;
-// Beginning of the trial; undefined once a person or a link has chosen.
+// Beginning of the trial; false once the machine, a person or a link has chosen.
 let trial;
 // A hand that a device was asked for.
 let asked = false;
@@ -127,8 +127,8 @@ function adapt() {
 // Chooses the number of guides once by what the first second has cost.
 function fitMachine(now) {
   trial ??= now;
-  if (trial === null || now - trial < TRIAL) return;
-  trial = null;
+  if (trial === false || now - trial < TRIAL) return;
+  trial = false;
   // On the processor a step costs as much as it has strands; a GPU keeps up with the screen or does not.
   const keepsUp = smooth.between < FRAME_COST ? Infinity : 0;
   const most = device ? keepsUp : (engine.strand_count() * STEP_COST) / smooth.step;
@@ -225,7 +225,9 @@ function grow(keys, values, width, height) {
       return Engine.on_device(device, keys, values, width, height);
     } catch (error) {
       // What a setting refuses the processor refuses too.
+      const other = new Engine(keys, values, width, height);
       [device, why] = [undefined, `the GPU refuses: ${error.message}`];
+      return other;
     }
   }
   return new Engine(keys, values, width, height);
@@ -266,7 +268,7 @@ const acts = {
       tell("refused", { message: String(error.message) });
       engine = grow([], [], width, height);
     }
-    if (keys.includes("style.strand_count")) trial = null;
+    if (keys.includes("style.strand_count")) trial = false;
     if (device) await warm(backend);
     else paint();
     tell("device", { why });
@@ -322,7 +324,7 @@ onmessage = async ({ data }) => {
   if (data.type !== "open" && !engine) return;
   try {
     await acts[data.type](data);
-    if (["set", "file", "grab"].includes(data.type)) trial = null;
+    if (["set", "file", "grab"].includes(data.type)) trial = false;
     if (!["open", "save", "visible"].includes(data.type) && engine) wake();
   } catch (error) {
     fail(error);
