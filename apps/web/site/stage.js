@@ -13,7 +13,7 @@ const FARTHEST = { pitch: 35, yaw: 80 };
 const KEY_WAY = 0.03;
 const KEY_PLACE = { x: 0.5, y: 0.3 };
 // Pixels of the picture at most, by what draws it.
-const MOST_PIXELS = { processor: 720 * 900, gpu: 1600 * 1600 };
+const MOST_PIXELS = { processor: 720 * 900, gpu: 1200 * 1200 };
 
 const worker = new Worker("worker.js", { type: "module" });
 export const ask = (type, content = {}, moved = []) => worker.postMessage({ type, ...content }, moved);

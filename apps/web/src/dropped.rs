@@ -90,7 +90,7 @@ mod tests {
     fn too_much_memory_is_refused_by_its_key_without_a_mend_that_a_page_has_not() {
         let mut scene = Scene::demo();
         (scene.groom.bound, scene.groom.points_per_strand) = (Some(8_000_000), 64);
-        let error = text(strandline::Prepared::new(&scene).unwrap_err());
+        let error = text(strandline::Prepared::new(&scene).err().unwrap());
         assert!(error.contains("MiB that may be taken") && error.ends_with("ask for less"), "{error}");
     }
 }
