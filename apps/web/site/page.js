@@ -29,6 +29,11 @@ function show(settings) {
   }
 }
 
+// The machine chooses the number of guides where nobody has.
+const guides = controls.querySelector('[data-key="style.strand_count"]');
+on("figures", ({ strands }) => {
+  if (guides !== document.activeElement) guides.value = String(strands);
+});
 on("opened", () => controls.querySelectorAll('[name="style"]').forEach((choice) => { choice.checked = false; }));
 on("notes", ({ notes }) => {
   const items = notes.map((note) => Object.assign(document.createElement("li"), { textContent: note }));

@@ -12,22 +12,22 @@ const FARTHEST = { pitch: 35, yaw: 80 };
 // Way of a hand by a key, of the canvas; place where it begins.
 const KEY_WAY = 0.03;
 const KEY_PLACE = { x: 0.5, y: 0.3 };
-// Pixels of the picture at most: the processor draws it.
-const MOST_PIXELS = 720 * 900;
+// Pixels of the picture at most, by what draws it.
+const MOST_PIXELS = { processor: 720 * 900, gpu: 1200 * 1200 };
 
 const worker = new Worker("worker.js", { type: "module" });
 export const ask = (type, content = {}, moved = []) => worker.postMessage({ type, ...content }, moved);
 export const set = (key, value) => ask("set", { key, value: String(value) });
 
-export const state = { held: undefined, dragging: undefined, hand: undefined, turn: { pitch: 0, yaw: 0 }, ready: false };
+export const state = { held: undefined, dragging: undefined, hand: undefined, turn: { pitch: 0, yaw: 0 }, ready: false, gpu: false };
 
 // What tests look at, and nothing else.
-export const seen = { refused: [], figures: undefined, grabbed: undefined, opened: undefined, saved: undefined, given: [] };
+export const seen = { refused: [], figures: undefined, grabbed: undefined, opened: undefined, saved: undefined, given: [], device: undefined };
 
 function size() {
   const box = canvas.getBoundingClientRect();
   const wanted = Math.max(box.width * box.height, 1) * devicePixelRatio ** 2;
-  const factor = devicePixelRatio * Math.min(1, Math.sqrt(MOST_PIXELS / wanted));
+  const factor = devicePixelRatio * Math.min(1, Math.sqrt(MOST_PIXELS[state.gpu ? "gpu" : "processor"] / wanted));
   return { width: Math.max(16, Math.round(box.width * factor)), height: Math.max(16, Math.round(box.height * factor)) };
 }
 
@@ -56,6 +56,13 @@ const told = {
   ready() {
     state.ready = true;
     find("progress").hidden = true;
+    if (state.gpu) ask("resize", size());
+  },
+  // Without a word why not, a GPU simulates and draws.
+  device({ why }) {
+    seen.device = why ?? "gpu";
+    state.gpu = why === undefined;
+    if (state.ready) ask("resize", size());
   },
   given: ({ given }) => { seen.given = given; },
   refused: ({ message }) => problem(message),
@@ -81,10 +88,11 @@ const told = {
   notes() {},
   figures(figures) {
     seen.figures = figures;
-    const { rate, picture, step, still, paused, strands, width, height } = figures;
+    const { rate, picture, step, still, paused, strands, width, height, gpu, why } = figures;
     const pace = paused ? "paused" : still ? "at rest" : `${rate.toFixed(0)} frames/s`;
-    const moving = still ? "" : `, step ${step.toFixed(0)} ms, picture ${picture.toFixed(0)} ms`;
-    find("figures").textContent = `Processor, ${strands} guides, ${width} × ${height}: ${pace}${moving}`;
+    const moving = still || gpu ? "" : `, step ${step.toFixed(0)} ms, picture ${picture.toFixed(0)} ms`;
+    const place = gpu ? "GPU" : `Processor (${why})`;
+    find("figures").textContent = `${place}, ${strands} guides, ${width} × ${height}: ${pace}${moving}`;
   },
   saved({ file }) { seen.saved = file; },
 };
@@ -181,7 +189,9 @@ document.addEventListener("visibilitychange", () => ask("visible", { on: !docume
 export function open(settings) {
   const { width, height } = size();
   const offscreen = canvas.transferControlToOffscreen();
-  ask("open", { canvas: offscreen, settings, width, height }, [offscreen]);
+  // `?backend=cpu` and `?backend=gpu` choose in place of the page.
+  const backend = new URLSearchParams(location.search).get("backend");
+  ask("open", { canvas: offscreen, settings, width, height, backend }, [offscreen]);
   let resized;
   new ResizeObserver(() => {
     clearTimeout(resized);

@@ -73,7 +73,24 @@ impl Dropped {
     }
 }
 
-/// Text of an error.
+/// Text of an error, for a visitor: a page has no environment to allow more memory with.
 pub fn text(error: Error) -> String {
-    error.to_string()
+    let text = error.to_string();
+    match text.split_once(", or allow more with the environment") {
+        Some((before, _)) => before.to_owned(),
+        None => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn too_much_memory_is_refused_by_its_key_without_a_mend_that_a_page_has_not() {
+        let mut scene = Scene::demo();
+        (scene.groom.bound, scene.groom.points_per_strand) = (Some(8_000_000), 64);
+        let error = text(strandline::Prepared::new(&scene).err().unwrap());
+        assert!(error.contains("MiB that may be taken") && error.ends_with("ask for less"), "{error}");
+    }
 }

@@ -5,6 +5,8 @@
 use glam::Vec2;
 use wasm_bindgen::prelude::*;
 
+#[cfg(feature = "gpu")]
+use crate::device::Device;
 use crate::{Page, bits};
 
 #[wasm_bindgen]
@@ -54,6 +56,21 @@ impl Engine {
         Ok(Self { page, width: 0, height: 0 })
     }
 
+    /// True while a device of the browser simulates and draws.
+    pub fn is_on_device(&self) -> bool {
+        self.page.gpu().is_some()
+    }
+
+    /// Goes on on the CPU with the hair as it is.
+    pub fn to_processor(&mut self, reason: &str) -> Done {
+        self.page.fall_back_after(reason).map_err(refused)
+    }
+
+    /// Strands where no setting tells.
+    pub fn set_strands(&mut self, strands: u32) -> Done {
+        self.page.set_strands(strands as usize).map_err(refused)
+    }
+
     pub fn set(&mut self, key: &str, value: &str) -> Done {
         self.page.set(key, value).map_err(refused)
     }
@@ -75,7 +92,8 @@ impl Engine {
         self.page.resize([width, height]).map_err(refused)
     }
 
-    pub fn frame(&mut self) -> Done {
+    /// False where no time has passed.
+    pub fn frame(&mut self) -> Result<bool, JsError> {
         self.page.frame().map_err(refused)
     }
 
@@ -96,8 +114,13 @@ impl Engine {
         self.height
     }
 
-    pub fn grab(&mut self, x: f32, y: f32, radius: f32) -> Result<bool, JsError> {
+    pub fn grab(&mut self, x: f32, y: f32, radius: f32) -> Done {
         self.page.grab(Vec2::new(x, y), radius).map_err(refused)
+    }
+
+    /// True where the hand holds hair; `undefined` while a device is asked.
+    pub fn grabbed(&mut self) -> Result<Option<bool>, JsError> {
+        self.page.grabbed().map_err(refused)
     }
 
     pub fn drag(&mut self, x: f32, y: f32) -> Done {
@@ -116,13 +139,44 @@ impl Engine {
         self.page.strand_count() as u32
     }
 
-    /// Coordinates of all points of the guides \[m\], world space.
-    pub fn points(&mut self) -> Result<Vec<f32>, JsError> {
+    /// Coordinates of all points of the guides \[m\], world space; `undefined` while a device is asked.
+    pub fn points(&mut self) -> Result<Option<Vec<f32>>, JsError> {
         let points = self.page.points().map_err(refused)?;
-        Ok(points.into_iter().flat_map(|point| point.to_array()).collect())
+        Ok(points.map(|points| points.into_iter().flat_map(|point| point.to_array()).collect()))
     }
 
     pub fn notes(&mut self) -> Vec<String> {
         self.page.take_notes()
+    }
+}
+
+#[cfg(feature = "gpu")]
+#[wasm_bindgen]
+impl Engine {
+    /// As the constructor, simulated and drawn on a device of the browser.
+    pub fn on_device(
+        device: &Device,
+        keys: Vec<String>,
+        values: Vec<String>,
+        width: u32,
+        height: u32,
+    ) -> Result<Self, JsError> {
+        let given = keys.into_iter().zip(values).collect();
+        let page = Page::open_on(given, [width, height], device.gpu()).map_err(refused)?;
+        Ok(Self { page, width: 0, height: 0 })
+    }
+
+    /// Draws into the canvas of the device; its size are `width` and `height` from then on. False where the device has
+    /// failed.
+    pub fn draw(&mut self, device: &Device) -> Result<bool, JsError> {
+        [self.width, self.height] = self.page.size();
+        let Some((target, format)) = device.target(self.page.size()) else {
+            self.page.fall_back_after("the canvas gives no texture").map_err(refused)?;
+            return Ok(false);
+        };
+        let view = target.texture.create_view(&Default::default());
+        let drawn = self.page.draw_to(&view, format).map_err(refused);
+        device.watch();
+        drawn
     }
 }

@@ -4,9 +4,13 @@
 #![deny(unsafe_code)]
 
 pub mod bits;
+#[cfg(all(target_family = "wasm", feature = "gpu"))]
+mod device;
 mod dropped;
 #[cfg(target_family = "wasm")]
 mod exports;
+mod limits;
+mod own;
 mod page;
 
 pub use page::Page;

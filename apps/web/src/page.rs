@@ -2,19 +2,32 @@
 
 use glam::{Vec2, Vec3};
 use strandline::{
-    Backend, Camera, Change, Event, FrameLoop, Light, Picture, Prepared, Ray, Scene, Sources, math,
-    scene::{MotionName, hex_color},
+    Backend, Camera, Change, Error, Event, FrameLoop, Picture, Prepared, Ray, Scene, Sources, device::Gpu,
+    scene::MotionName,
 };
 
 use crate::dropped::{Dropped, text};
+use crate::limits::{check_strands, is_loaded};
+use crate::own::Own;
 
-/// Strands that a page simulates until it is asked for more.
-const STRANDS: &str = "400";
-/// Most strands that a page simulates, and that it grows in all: more would keep a visitor waiting for minutes.
-const MOST_SIMULATED: usize = 20_000;
-const MOST_GROWN: usize = 200_000;
+/// Strands that a page simulates until it is told otherwise.
+const STRANDS: usize = 400;
 /// Widths and heights of pictures on the CPU \[pixel\].
 const SIDES: [u32; 2] = [16, 2048];
+
+/// Everything that the hair of a page is loaded from.
+#[derive(Clone)]
+struct Wanted {
+    /// Settings that were given, in the order of their last mention.
+    given: Vec<(String, String)>,
+    dropped: Vec<Dropped>,
+    /// Width and height of the pictures \[pixel\].
+    size: [u32; 2],
+    /// Strands to simulate where no setting tells.
+    strands: usize,
+    /// Device that simulates and draws; none on the CPU.
+    gpu: Option<Gpu>,
+}
 
 /// Hair that a page shows. Settings have the keys of scenes, and three of the page's own: `page.light` and `page.view`, angles
 /// \[degrees\] by which the lights and the camera are turned about the head, and `page.color`, `#rrggbb`, the lights'
@@ -23,59 +36,11 @@ pub struct Page {
     hair: FrameLoop,
     /// The scene as it is shown, fitted to its groom.
     scene: Scene,
-    /// Settings that were given, in the order of their last mention.
-    given: Vec<(String, String)>,
-    dropped: Vec<Dropped>,
-    size: [u32; 2],
+    wanted: Wanted,
     own: Own,
     /// The camera before the page turns it.
     camera: Camera,
     notes: Vec<String>,
-}
-
-/// Settings of the page over those of the scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Own {
-    /// Angles of the lights and of the camera about the head \[degrees\].
-    light: f32,
-    view: f32,
-    /// Colour of the lights, linear RGB.
-    color: Vec3,
-}
-
-impl Own {
-    const OFF: Self = Self { light: 0.0, view: 0.0, color: Vec3::ONE };
-
-    /// Takes a setting of the page; false for another key.
-    fn take(&mut self, key: &str, value: &str) -> Result<bool, String> {
-        let wrong = |expected: &str| format!("{key}: found `{value}`, expected {expected}");
-        let angle = || {
-            let angle = value.parse().ok().filter(|angle: &f32| angle.abs() <= 360.0);
-            angle.ok_or_else(|| wrong("degrees from -360 to 360"))
-        };
-        match key {
-            "page.light" => self.light = angle()?,
-            "page.view" => self.view = angle()?,
-            "page.color" => {
-                self.color = hex_color(value).ok_or_else(|| wrong("a colour as #rrggbb"))?.into();
-            }
-            _ if key.starts_with("page.") => {
-                return Err(format!("{key}: expected page.light, page.view or page.color"));
-            }
-            _ => return Ok(false),
-        }
-        Ok(true)
-    }
-
-    /// Lights, turned about the vertical through their target and coloured.
-    fn over(self, mut lights: Vec<Light>) -> Vec<Light> {
-        let turn = math::rotation(Vec3::Y, self.light.to_radians());
-        for light in &mut lights {
-            light.position = light.target + turn * (light.position - light.target);
-            light.color *= self.color;
-        }
-        lights
-    }
 }
 
 impl Page {
@@ -84,17 +49,26 @@ impl Page {
     /// # Errors
     /// A key that no setting has, a value outside its range, more strands than a page grows, more memory than may be taken.
     pub fn open(given: Vec<(String, String)>, size: [u32; 2]) -> Result<Self, String> {
-        Self::load(given, Vec::new(), size)
+        Self::load(Wanted { given, dropped: Vec::new(), size, strands: STRANDS, gpu: None })
     }
 
-    fn load(given: Vec<(String, String)>, dropped: Vec<Dropped>, size: [u32; 2]) -> Result<Self, String> {
-        let size = size.map(|side| side.clamp(SIDES[0], SIDES[1]));
+    /// As [`Page::open`], simulated and drawn on a device of the browser: see [`Page::draw_to`].
+    ///
+    /// # Errors
+    /// As there; whatever the device refuses.
+    pub fn open_on(given: Vec<(String, String)>, size: [u32; 2], gpu: &Gpu) -> Result<Self, String> {
+        let gpu = Some(gpu.clone());
+        Self::load(Wanted { given, dropped: Vec::new(), size, strands: STRANDS, gpu })
+    }
+
+    fn load(mut wanted: Wanted) -> Result<Self, String> {
+        wanted.size = wanted.size.map(|side| side.clamp(SIDES[0], SIDES[1]));
         let mut scene = Scene::demo();
         (scene.motion.name, scene.motion.neck) = (MotionName::Turn, true);
-        [scene.picture.width, scene.picture.height] = size;
+        [scene.picture.width, scene.picture.height] = wanted.size;
         let mut own = Own::OFF;
         let mut settings = Vec::new();
-        for (key, value) in &given {
+        for (key, value) in &wanted.given {
             if !own.take(key, value)? {
                 settings.push((&**key, &**value));
             }
@@ -102,22 +76,35 @@ impl Page {
         // A style brings the number of its strands along.
         settings.sort_by_key(|(key, _)| *key != "style.style");
         let styles = settings.iter().take_while(|(key, _)| *key == "style.style").count();
-        settings.insert(styles, ("style.strand_count", STRANDS));
+        let strands = wanted.strands.to_string();
+        settings.insert(styles, ("style.strand_count", &strands));
         scene.set_all(settings).map_err(text)?;
         if scene.paths_mut().next().is_some() {
             return Err("a link cannot name files: drop them onto the page".to_owned());
         }
         check_strands(&scene)?;
-        dropped.iter().for_each(|file| file.name_in(&mut scene));
-        let sources = dropped.iter().fold(Sources::default(), |sources, file| file.add_to(sources));
+        wanted.dropped.iter().for_each(|file| file.name_in(&mut scene));
+        let sources = wanted.dropped.iter().fold(Sources::default(), |sources, file| file.add_to(sources));
         let mut prepared = Prepared::from_sources(&scene, &sources).map_err(text)?;
         let notes = std::mem::take(&mut prepared.notes);
         let scene = prepared.scene.clone();
-        let hair = FrameLoop::open(prepared, Backend::Cpu).map_err(text)?;
+        let hair = match &wanted.gpu {
+            Some(gpu) => FrameLoop::with_device(prepared, gpu),
+            None => FrameLoop::open(prepared, Backend::Cpu),
+        };
+        let hair = hair.map_err(text)?;
         let camera = *hair.camera();
-        let mut page = Self { hair, scene, given, dropped, size, own, camera, notes };
+        let mut page = Self { hair, scene, wanted, own, camera, notes };
         page.show_own()?;
         Ok(page)
+    }
+
+    /// Loads the hair anew, and keeps the notes.
+    fn reload(&mut self, wanted: Wanted) -> Result<(), String> {
+        let mut page = Self::load(wanted)?;
+        page.notes.splice(..0, self.notes.drain(..));
+        *self = page;
+        Ok(())
     }
 
     /// Changes a setting while the hair moves; one of what is loaded begins anew.
@@ -125,7 +112,7 @@ impl Page {
     /// # Errors
     /// As [`Page::open`]; nothing has changed then.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), String> {
-        let mut given = self.given.clone();
+        let mut given = self.wanted.given.clone();
         given.retain(|(known, _)| known != key);
         given.push((key.to_owned(), value.to_owned()));
         let mut own = self.own;
@@ -133,20 +120,29 @@ impl Page {
             self.own = own;
             self.show_own()?;
         } else if is_loaded(key) {
-            let mut dropped = self.dropped.clone();
+            let mut dropped = self.wanted.dropped.clone();
             // Another style, in place of a groom.
             dropped.retain(|file| key != "style.style" || !matches!(file, Dropped::Groom(..)));
-            let mut page = Self::load(given, dropped, self.size)?;
-            page.notes.splice(..0, self.notes.drain(..));
-            *self = page;
-            return Ok(());
+            return self.reload(Wanted { given, dropped, ..self.wanted.clone() });
         } else {
             let mut scene = self.scene.clone();
             scene.set(key, value).map_err(text)?;
             self.show(scene)?;
         }
-        self.given = given;
+        self.wanted.given = given;
         Ok(())
+    }
+
+    /// Changes the number of strands that are simulated where no setting tells; the hair is loaded anew where it differs.
+    ///
+    /// # Errors
+    /// As [`Page::open`]; nothing has changed then.
+    pub fn set_strands(&mut self, strands: usize) -> Result<(), String> {
+        let tells = |(key, _): &(String, String)| key == "style.strand_count";
+        if strands == self.wanted.strands || self.wanted.given.iter().any(tells) {
+            return Ok(());
+        }
+        self.reload(Wanted { strands, ..self.wanted.clone() })
     }
 
     /// Shows a scene that differs in what moves and is drawn alone.
@@ -178,7 +174,7 @@ impl Page {
             changes.push(Change::Length(scene.groom.length));
         }
         let is_lit_anew = scene.lights != before.lights || scene.look.preset != before.look.preset;
-        changes.into_iter().try_for_each(|change| self.hair.change(change)).map_err(text)?;
+        changes.into_iter().try_for_each(|change| self.change(change))?;
         self.scene = scene;
         if is_lit_anew { self.show_own() } else { Ok(()) }
     }
@@ -189,7 +185,7 @@ impl Page {
         let lights = if named.is_empty() { self.hair.lights_of(&self.scene.look) } else { named.clone() };
         let camera = self.camera.orbit(self.own.view.to_radians(), 0.0);
         let changes = [Change::Camera(camera), Change::Lights(self.own.over(lights))];
-        changes.into_iter().try_for_each(|change| self.hair.change(change)).map_err(text)
+        changes.into_iter().try_for_each(|change| self.change(change))
     }
 
     /// The value of a setting as it is shown, as TOML.
@@ -202,7 +198,7 @@ impl Page {
 
     /// Settings that were given: what a link carries.
     pub fn given(&self) -> &[(String, String)] {
-        &self.given
+        &self.wanted.given
     }
 
     /// Takes a file that was dropped onto the page: a groom takes the place of the style, a head that of the mannequin.
@@ -211,11 +207,10 @@ impl Page {
     /// A file that is neither, or that is not sound; nothing has changed then.
     pub fn drop_file(&mut self, name: &str, bytes: &[u8]) -> Result<(), String> {
         let file = Dropped::read(name, bytes)?;
-        let mut dropped = self.dropped.clone();
-        dropped.retain(|known| !file.replaces(known));
-        dropped.push(file);
-        *self = Self::load(self.given.clone(), dropped, self.size)?;
-        Ok(())
+        let mut wanted = self.wanted.clone();
+        wanted.dropped.retain(|known| !file.replaces(known));
+        wanted.dropped.push(file);
+        self.reload(wanted)
     }
 
     /// Changes the size of the pictures \[pixel\]; what is shown stays as large in height.
@@ -223,68 +218,141 @@ impl Page {
     /// # Errors
     /// The picture would take too much memory.
     pub fn resize(&mut self, size: [u32; 2]) -> Result<(), String> {
-        self.size = size.map(|side| side.clamp(SIDES[0], SIDES[1]));
+        self.wanted.size = size.map(|side| side.clamp(SIDES[0], SIDES[1]));
         let mut scene = self.scene.clone();
-        [scene.picture.width, scene.picture.height] = self.size;
+        [scene.picture.width, scene.picture.height] = self.wanted.size;
         self.show(scene)
     }
 
-    /// Lets a sixtieth of a second pass.
+    /// Width and height of the pictures \[pixel\].
+    pub fn size(&self) -> [u32; 2] {
+        self.wanted.size
+    }
+
+    /// The device that simulates and draws; none on the CPU.
+    pub fn gpu(&self) -> Option<&Gpu> {
+        self.wanted.gpu.as_ref()
+    }
+
+    /// Does something with the hair; where its device fails, again on the CPU, with a note.
+    fn guarded<T>(&mut self, act: impl Fn(&mut FrameLoop) -> Result<T, Error>) -> Result<T, String> {
+        match act(&mut self.hair) {
+            Err(failure) if self.wanted.gpu.is_some() && is_of_gpu(&failure) => {
+                self.fall_back_after(&failure.to_string())?;
+                act(&mut self.hair).map_err(text)
+            }
+            done => done.map_err(text),
+        }
+    }
+
+    /// Goes on on the CPU with the hair as it is, after a failure of the device.
     ///
     /// # Errors
-    /// None on the CPU.
-    pub fn frame(&mut self) -> Result<(), String> {
-        self.hair.frame().map_err(text)?;
+    /// The pictures take more memory than there is.
+    pub fn fall_back_after(&mut self, failure: &str) -> Result<(), String> {
+        self.wanted.gpu = None;
+        self.hair.fall_back_after(failure).map_err(text)?;
+        self.notes.append(&mut self.hair.take_notes());
+        Ok(())
+    }
+
+    /// Lets a sixtieth of a second pass. Returns false where none has passed: the device is behind, or a hand waits for it.
+    ///
+    /// # Errors
+    /// A change that waited for the device is refused.
+    pub fn frame(&mut self) -> Result<bool, String> {
+        let passed = self.guarded(FrameLoop::frame)?;
         while let Some(event) = self.hair.next_event() {
             if let Event::Note(note) = event {
                 self.notes.push(note);
             }
         }
-        Ok(())
+        Ok(passed)
     }
 
-    /// Draws the hair as it is, simpler and smaller with a coarseness of 0 to 3.
+    /// Draws the hair as it is into a texture of the page's device, of the size of the pictures. Returns false where the
+    /// device has failed: [`Page::picture`] draws from then on.
     ///
     /// # Errors
-    /// None on the CPU for settings that were taken.
+    /// A texture of another size.
+    #[cfg(feature = "gpu")]
+    pub fn draw_to(
+        &mut self,
+        target: &strandline::device::wgpu::TextureView,
+        format: strandline::device::wgpu::TextureFormat,
+    ) -> Result<bool, String> {
+        match self.hair.draw_to(target, format) {
+            Err(failure) if self.wanted.gpu.is_some() && is_of_gpu(&failure) => {
+                self.fall_back_after(&failure.to_string())?;
+                Ok(false)
+            }
+            drawn => drawn.map(|_| true).map_err(text),
+        }
+    }
+
+    /// Draws the hair as it is on the CPU, simpler and smaller with a coarseness of 0 to 3.
+    ///
+    /// # Errors
+    /// The hair is on a device that never waits.
     pub fn picture(&mut self, coarseness: Option<usize>) -> Result<Picture, String> {
         Ok(self.hair.picture(coarseness).map_err(text)?.0)
     }
 
-    /// Takes the hair at a place of the picture into a hand of a radius \[m\]; true where there is some. Places run from 0
-    /// at the left and at the top to 1.
+    /// Takes the hair at a place of the picture into a hand of a radius \[m\]. Places run from 0 at the left and at the top
+    /// to 1. [`Page::grabbed`] tells what the hand holds.
     ///
     /// # Errors
-    /// None on the CPU.
-    pub fn grab(&mut self, place: Vec2, radius: f32) -> Result<bool, String> {
+    /// None for finite places.
+    pub fn grab(&mut self, place: Vec2, radius: f32) -> Result<(), String> {
         let ray = self.ray(place);
-        self.hair.change(Change::Grab(ray, radius)).map_err(text)?;
-        Ok(self.hair.grabbed() > 0)
+        self.change(Change::Grab(ray, radius))
+    }
+
+    /// True where the hand holds hair; `None` while a device is asked.
+    ///
+    /// # Errors
+    /// A change that waited for the device is refused.
+    pub fn grabbed(&mut self) -> Result<Option<bool>, String> {
+        let is_done = self.guarded(FrameLoop::make_changes)?;
+        Ok(is_done.then(|| self.hair.grabbed() > 0))
     }
 
     /// Moves the hand to a place of the picture.
     ///
     /// # Errors
-    /// None on the CPU.
+    /// None for finite places.
     pub fn drag(&mut self, place: Vec2) -> Result<(), String> {
         let ray = self.ray(place);
-        self.hair.change(Change::Drag(ray)).map_err(text)
+        self.change(Change::Drag(ray))
     }
 
     /// Lets go of the hair.
     ///
     /// # Errors
-    /// None on the CPU.
+    /// None.
     pub fn release(&mut self) -> Result<(), String> {
-        self.hair.change(Change::Release).map_err(text)
+        self.change(Change::Release)
     }
 
     /// Back to rest.
     ///
     /// # Errors
-    /// None on the CPU.
+    /// None.
     pub fn reset(&mut self) -> Result<(), String> {
-        self.hair.change(Change::Reset).map_err(text)
+        self.change(Change::Reset)
+    }
+
+    fn change(&mut self, change: Change) -> Result<(), String> {
+        let waiting = self.hair.waiting();
+        match self.hair.change(change.clone()) {
+            Err(failure) if self.wanted.gpu.is_some() && is_of_gpu(&failure) => {
+                self.fall_back_after(&failure.to_string())?;
+                let is_kept = self.hair.waiting() > waiting;
+                let made = if is_kept { Ok(()) } else { self.hair.change(change) };
+                made.and_then(|()| self.hair.make_changes().map(drop)).map_err(text)
+            }
+            done => done.map_err(text),
+        }
     }
 
     /// Simulated strands.
@@ -292,12 +360,13 @@ impl Page {
         self.hair.strand_count()
     }
 
-    /// Points of the guides \[m\], world space, one after the other.
+    /// Points of the guides \[m\], world space, one after the other; `None` while they are on their way from a device: a
+    /// later call finds them.
     ///
     /// # Errors
-    /// None on the CPU.
-    pub fn points(&mut self) -> Result<Vec<Vec3>, String> {
-        Ok(self.hair.points().map_err(text)?.to_vec())
+    /// None.
+    pub fn points(&mut self) -> Result<Option<Vec<Vec3>>, String> {
+        self.guarded(|hair| Ok(hair.arrived_points()?.map(<[Vec3]>::to_vec)))
     }
 
     /// Notes since the last call, human-readable.
@@ -307,41 +376,18 @@ impl Page {
 
     /// Line of sight through a place of the picture.
     fn ray(&self, place: Vec2) -> Ray {
-        let [width, height] = self.size.map(|side| side as f32);
+        let [width, height] = self.wanted.size.map(|side| side as f32);
         let across = Vec2::new((2.0 * place.x - 1.0) * width / height, 1.0 - 2.0 * place.y);
         Ray::new(self.hair.camera(), across)
     }
 }
 
-/// Refuses more strands than a page moves or grows in time.
-fn check_strands(scene: &Scene) -> Result<(), String> {
-    let counts = [
-        ("style.strand_count", Some(scene.style.strand_count), MOST_SIMULATED),
-        ("groom.guides", scene.groom.guides.map(|count| count as usize), MOST_SIMULATED),
-        ("groom.bound", scene.groom.bound.map(|count| count as usize), MOST_GROWN),
-    ];
-    for (key, count, most) in counts {
-        if let Some(found) = count.filter(|count| *count > most) {
-            return Err(format!("{key}: found {found}, expected {most} at most in a page"));
-        }
+/// True for a failure of the device, and false for a setting that it refuses.
+fn is_of_gpu(error: &Error) -> bool {
+    match error {
+        Error::Gpu(_) => true,
+        Error::Sim(error) => error.gpu().is_some(),
+        Error::Render(error) => error.is_of_gpu(),
+        _ => false,
     }
-    Ok(())
-}
-
-/// True for a setting that only a new load takes in.
-fn is_loaded(key: &str) -> bool {
-    let section = key.split(['.', '[']).next().unwrap_or_default();
-    let is_live =
-        ["look", "body_look", "level_of_detail", "picture", "wind", "motion", "simulation", "lights"];
-    let of_load = [
-        "motion.neck",
-        "motion.file",
-        "look.color_map",
-        "look.width_map",
-        "look.group",
-        "simulation.strands",
-    ];
-    let is_of_springs = key.starts_with("simulation.strands.constrain");
-    let is_loaded = of_load.iter().any(|start| key.starts_with(start)) && !is_of_springs;
-    !is_live.contains(&section) && key != "groom.length" || is_loaded
 }

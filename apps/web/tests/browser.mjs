@@ -1,113 +1,12 @@
 // Opens the page in Chromium without a screen and uses it: node browser.mjs FOLDER CHROMIUM ADDRESS [PICTURES].
-// Talks to Chromium by its pipe (DevTools protocol). With a folder for PICTURES the page is kept as it looks.
+// With a folder for PICTURES the page is kept as it looks.
 
-import { spawn } from "node:child_process";
-import { createServer, get } from "node:http";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 
-const [folder, chromium, server, pictures] = process.argv.slice(2);
-// Milliseconds that a thing may take on a busy machine, and that the whole may take.
-const PATIENCE = 60_000;
-const MOST = 280_000;
+import { attach, folder, held, look, mouse, opens, pause, pictures, problems, run, send, shut, until, value } from "./driver.mjs";
 
-// The server behind a gate: while it is shut there is no network.
-let shut = false;
-const gate = createServer((request, response) => {
-  if (shut) return request.socket.destroy();
-  get(server + request.url.slice(1), (answer) => {
-    response.writeHead(answer.statusCode, answer.headers);
-    answer.pipe(response);
-  }).on("error", () => request.socket.destroy());
-});
-await new Promise((resolve) => { gate.listen(0, "127.0.0.1", resolve); });
-const address = `http://127.0.0.1:${gate.address().port}/`;
-
-const profile = mkdtempSync(join(tmpdir(), "strandline-web-"));
-const flags = [
-  "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-extensions", "--remote-debugging-pipe",
-  `--user-data-dir=${profile}`, "--window-size=1200,800", "about:blank",
-];
-const browser = spawn(chromium, flags, { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
-const end = (code) => {
-  browser.kill("SIGKILL");
-  browser.once("close", () => {
-    rmSync(profile, { recursive: true, force: true, maxRetries: 5, retryDelay: 200 });
-    process.exit(code);
-  });
-};
-setTimeout(() => {
-  console.error("the page takes too long");
-  end(1);
-}, MOST).unref();
-
-// Messages of the protocol, each ended by a zero.
-let buffer = "";
-let count = 0;
-const answers = new Map();
-const problems = [];
-browser.stdio[4].on("data", (data) => {
-  buffer += data;
-  const messages = buffer.split("\0");
-  buffer = messages.pop();
-  messages.map((message) => JSON.parse(message)).forEach(take);
-});
-function take(message) {
-  const { id, method, params, result, error } = message;
-  if (id !== undefined) {
-    const { resolve, reject } = answers.get(id);
-    answers.delete(id);
-    return error ? reject(new Error(JSON.stringify(error))) : resolve(result);
-  }
-  if (method === "Runtime.consoleAPICalled" && params.type === "error") {
-    problems.push(params.args.map((part) => part.value ?? part.description).join(" "));
-  } else if (method === "Runtime.exceptionThrown") {
-    problems.push(params.exceptionDetails.exception?.description ?? params.exceptionDetails.text);
-  } else if (method === "Log.entryAdded" && params.entry.level === "error") {
-    problems.push(`${params.entry.text} ${params.entry.url ?? ""}`);
-  } else if (method === "Target.attachedToTarget") {
-    // The worker of the page.
-    const session = params.sessionId;
-    send("Runtime.enable", {}, session);
-    send("Log.enable", {}, session).catch(() => {});
-    send("Runtime.runIfWaitingForDebugger", {}, session);
-  }
-}
-function send(method, params = {}, sessionId = page) {
-  count += 1;
-  browser.stdio[3].write(`${JSON.stringify({ id: count, method, params, sessionId })}\0`);
-  return new Promise((resolve, reject) => answers.set(count, { resolve, reject }));
-}
-
-let page;
-const pause = (milliseconds) => new Promise((resolve) => { setTimeout(resolve, milliseconds); });
-// The value of an expression in the page, `seen` of its script among its names.
-async function value(expression) {
-  const whole = `import("./stage.js").then(({ seen }) => (${expression}))`;
-  const { result, exceptionDetails } = await send("Runtime.evaluate", { expression: whole, awaitPromise: true, returnByValue: true });
-  if (exceptionDetails) throw new Error(`${expression}: ${exceptionDetails.exception?.description}`);
-  return result.value;
-}
-async function until(expression) {
-  const last = Date.now() + PATIENCE;
-  while (Date.now() < last) {
-    if (await value(expression)) return;
-    await pause(50);
-  }
-  throw new Error(`never so: ${expression}; refused: ${await value("seen.refused.join()")}; ${problems.join("; ")}`);
-}
-function held(condition, what) {
-  if (!condition) throw new Error(what);
-  console.log(`passed: ${what}`);
-}
-const mouse = (type, x, y) => send("Input.dispatchMouseEvent", { type, x, y, button: "left", buttons: 1, clickCount: 1 });
-async function look(name) {
-  if (!pictures) return;
-  const { data } = await send("Page.captureScreenshot", { format: "png" });
-  writeFileSync(join(pictures, `${name}.png`), Buffer.from(data, "base64"));
-}
 // Mean difference of the canvas from a picture of the module in Node, of 255.
 async function difference(bytes, width, height) {
   const wanted = Buffer.from(bytes).toString("base64");
@@ -122,23 +21,8 @@ async function difference(bytes, width, height) {
   })()`);
 }
 
-async function opens(hash, file = "") {
-  const begin = Date.now();
-  await send("Page.navigate", { url: "about:blank" });
-  await send("Page.navigate", { url: `${address}${file}${hash}` });
-  await pause(100);
-  await until("document.getElementById('progress').hidden");
-  return (Date.now() - begin) / 1e3;
-}
-
 async function test() {
-  const { targetInfos } = await send("Target.getTargets", {}, undefined);
-  const target = targetInfos.find(({ type }) => type === "page");
-  ({ sessionId: page } = await send("Target.attachToTarget", { targetId: target.targetId, flatten: true }, undefined));
-  await send("Page.enable");
-  await send("Runtime.enable");
-  await send("Log.enable");
-  await send("Target.setAutoAttach", { autoAttach: true, waitForDebuggerOnStart: true, flatten: true });
+  const target = await attach();
   const size = (width, height) =>
     send("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: width < 500 });
 
@@ -246,11 +130,10 @@ async function test() {
 
   // Without a network.
   await value("navigator.serviceWorker.ready.then(() => true)");
-  shut = true;
-  gate.closeAllConnections();
+  shut(true);
   for (const file of ["", "index.html", "how.html"]) await opens("#style.style=bob&style.strand_count=64", file);
   await until("seen.figures?.rate > 0");
-  shut = false;
+  shut(false);
   held(true, "the page opens without a network after its first visit");
 
   // Links that are wrong.
@@ -278,7 +161,5 @@ async function test() {
   held(problems.length === 0, `nothing on the console: ${problems.join("; ")}`);
 }
 
-test().then(() => end(0), (error) => {
-  console.error(`failed: ${error.message}`);
-  end(1);
-});
+// The processor draws: a machine without a GPU.
+run(test, ["--disable-gpu"], 190_000);

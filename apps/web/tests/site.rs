@@ -57,8 +57,8 @@ fn base() -> Settings {
 /// Picture and points after the first frames of the motion.
 fn shown(page: &mut Page) -> (Picture, Vec<Vec3>) {
     page.reset().unwrap();
-    (0..FRAMES).for_each(|_| page.frame().unwrap());
-    (page.picture(None).unwrap(), page.points().unwrap())
+    (0..FRAMES).for_each(|_| _ = page.frame().unwrap());
+    (page.picture(None).unwrap(), page.points().unwrap().unwrap())
 }
 
 fn farthest(one: &[Vec3], other: &[Vec3]) -> f32 {

@@ -8,6 +8,17 @@ use strandline_web::{Page, bits};
 
 const SIZE: [u32; 2] = [48, 60];
 
+/// Grabs at a place; true where the hand holds hair.
+fn grab(page: &mut Page, place: Vec2, radius: f32) -> bool {
+    page.grab(place, radius).unwrap();
+    page.grabbed().unwrap().expect("the CPU answers at once")
+}
+
+/// Points of a page on the CPU.
+fn points(page: &mut Page) -> Vec<glam::Vec3> {
+    page.points().unwrap().unwrap()
+}
+
 /// A page of few strands on a head that rests, with further settings.
 fn page(further: &[(&str, &str)]) -> Result<Page, String> {
     let few = [("style.strand_count", "32"), ("motion.name", "still")];
@@ -47,7 +58,7 @@ fn a_link_makes_the_page_that_its_settings_made() {
     assert_eq!(linked.get("look.preset").unwrap(), "\"blonde\"");
     for page in [&mut changed, &mut linked] {
         page.reset().unwrap();
-        (0..3).for_each(|_| page.frame().unwrap());
+        (0..3).for_each(|_| _ = page.frame().unwrap());
     }
     let picture = linked.picture(None).unwrap();
     assert_eq!(changed.picture(None).unwrap(), picture);
@@ -88,14 +99,13 @@ fn what_is_refused_leaves_the_page_as_it_was() {
 #[test]
 fn a_hand_takes_hair_where_there_is_some() {
     let mut page = page(&[("style.style", "bob")]).unwrap();
-    assert!(!page.grab(Vec2::new(0.01, 0.01), 0.01).unwrap());
+    assert!(!grab(&mut page, Vec2::new(0.01, 0.01), 0.01));
     let places = (1..20).flat_map(|x| (1..20).map(move |y| Vec2::new(x as f32, y as f32) / 20.0));
-    let held =
-        places.into_iter().find(|place| page.grab(*place, 0.02).unwrap()).expect("hair in the picture");
-    let before = page.points().unwrap();
+    let held = places.into_iter().find(|place| grab(&mut page, *place, 0.02)).expect("hair in the picture");
+    let before = points(&mut page);
     page.drag(held + Vec2::new(0.2, 0.0)).unwrap();
-    (0..5).for_each(|_| page.frame().unwrap());
-    let pulled = before.iter().zip(page.points().unwrap()).map(|(one, other)| one.distance(other));
+    (0..5).for_each(|_| _ = page.frame().unwrap());
+    let pulled = before.iter().zip(points(&mut page)).map(|(one, other)| one.distance(other));
     assert!(pulled.fold(0.0, f32::max) > 0.02);
     page.release().unwrap();
 }
@@ -136,8 +146,8 @@ fn act(page: &mut Page, random: &mut Random) {
     // A refusal is a message; the page goes on.
     let set = |page: &mut Page, key: &str, value: String| drop(page.set(key, &value));
     match below(100) {
-        0..25 => page.frame().unwrap(),
-        25..40 => drop(page.grab(place, 0.05 * share).unwrap()),
+        0..25 => _ = page.frame().unwrap(),
+        25..40 => page.grab(place, 0.05 * share).unwrap(),
         40..55 => page.drag(2.0 * place - 0.5).unwrap(),
         55..62 => page.release().unwrap(),
         62..67 => page.reset().unwrap(),
@@ -171,7 +181,7 @@ fn a_thousand_random_changes_leave_the_page_that_its_link_makes() {
     for action in 0..1000 {
         act(&mut page, &mut random);
         if action % 20 == 0 {
-            assert!(page.points().unwrap().iter().all(|point| point.is_finite()), "action {action}");
+            assert!(points(&mut page).iter().all(|point| point.is_finite()), "action {action}");
         }
     }
     page.resize(SIZE).unwrap();
@@ -181,8 +191,8 @@ fn a_thousand_random_changes_leave_the_page_that_its_link_makes() {
     for page in [&mut page, &mut linked] {
         page.release().unwrap();
         page.reset().unwrap();
-        (0..3).for_each(|_| page.frame().unwrap());
+        (0..3).for_each(|_| _ = page.frame().unwrap());
     }
-    assert_eq!(page.points().unwrap(), linked.points().unwrap());
+    assert_eq!(points(&mut page), points(&mut linked));
     assert!(page.picture(None).unwrap() == linked.picture(None).unwrap(), "the pictures differ");
 }

@@ -98,13 +98,17 @@ impl FrameLoop {
         self.make_changes().map(drop)
     }
 
-    /// Makes the changes that can be made without a wait; true where none is left.
-    fn make_changes(&mut self) -> Result<bool, Error> {
-        while let Some(change) = self.asked.pop_front() {
-            if !self.session.is_ready_for(&change)? {
-                self.asked.push_front(change);
+    /// Makes the changes that can be made without a wait, while no time passes; true where none is left. A loop that calls
+    /// [`FrameLoop::frame`] needs no call of it.
+    ///
+    /// # Errors
+    /// A change that has waited is refused; the GPU failed.
+    pub fn make_changes(&mut self) -> Result<bool, Error> {
+        while let Some(change) = self.asked.front() {
+            if !self.session.is_ready_for(change)? {
                 return Ok(false);
             }
+            let Some(change) = self.asked.pop_front() else { break };
             self.session.change(change)?;
             self.take()?;
         }
@@ -145,6 +149,21 @@ impl FrameLoop {
     /// A setting outside its range; the GPU failed, and falling back to the CPU is not allowed.
     pub fn picture(&mut self, coarseness: Option<usize>) -> Result<(Picture, FrameReport), Error> {
         self.session.picture(coarseness.map(Draft::of))
+    }
+
+    /// The device that draws; none on the CPU.
+    pub fn gpu(&self) -> Option<&Gpu> {
+        self.session.view().gpu()
+    }
+
+    /// Falls back to the CPU after a failure of the host's device, such as its loss: the hair goes on from the state that was
+    /// last read, through the steps since, which are computed again. Changes that waited for the device follow.
+    ///
+    /// # Errors
+    /// The pictures take more memory than there is.
+    pub fn fall_back_after(&mut self, failure: &str) -> Result<(), Error> {
+        self.asked_points = None;
+        self.session.fall_back_after(failure)
     }
 
     /// The next event: reports of steps, and notes.

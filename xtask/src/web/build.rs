@@ -17,6 +17,12 @@ const FILES: &str = "apps/web/site";
 /// The script that keeps the page for visits without a network.
 const OFFLINE: &str = "offline.js";
 
+/// Cargo's profile of the module: small, and fast where it matters.
+const PROFILE: &str = "web";
+
+/// Memory that the module may have in all: 1 GiB.
+const MOST_MEMORY: &str = "link-arg=--max-memory=1073741824";
+
 /// Files of the module, as the binder writes them.
 const MODULE: [&str; 2] = ["strandline_web.js", "strandline_web_bg.wasm"];
 
@@ -31,24 +37,16 @@ pub fn page(compiler: &Compiler) -> Result<()> {
     Ok(())
 }
 
-/// Checks that all crates compile for browsers with GPUs too, which the page does not ask for yet.
-pub fn compiles_with_gpus(compiler: &Compiler) -> bool {
-    println!("\n== all crates with GPUs, for browsers");
-    let mut check =
-        compiler.cargo(&["check", "--quiet", "--lib", "--package", "strandline", "--features", "gpu"]);
-    check.args(["--target", TARGET, "--target-dir"]).arg(work().join("check"));
-    check.status().is_ok_and(|status| status.success())
-}
-
 /// Compiles the module. A library of the workspace becomes one here alone, so that nothing else links it.
 fn module(compiler: &Compiler) -> Result<PathBuf> {
     println!("\n== the module");
     let folder = work().join("build");
-    let words = ["rustc", "--release", "--lib", "--package", "strandline-web", "--crate-type", "cdylib"];
+    let words =
+        ["rustc", "--profile", PROFILE, "--lib", "--package", "strandline-web", "--crate-type", "cdylib"];
     let mut build = compiler.cargo(&words);
-    build.args(["--target", TARGET, "--target-dir"]).arg(&folder);
+    build.args(["--target", TARGET, "--target-dir"]).arg(&folder).args(["--", "-C", MOST_MEMORY]);
     ensure!(build.status()?.success(), "the module does not compile");
-    Ok(folder.join(TARGET).join("release/strandline_web.wasm"))
+    Ok(folder.join(TARGET).join(PROFILE).join("strandline_web.wasm"))
 }
 
 /// Writes module and script with the binder, a program of its own with a lock file of its own.

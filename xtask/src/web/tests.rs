@@ -1,14 +1,21 @@
 //! Tests of the finished page: its module in Node against the native program, and the page in Chromium.
 
+use std::fs;
+use std::path::Path;
 use std::process::{Command, Stdio};
 
-use super::folders::site;
+use super::folders::{site, work};
 use super::server;
 use crate::adapter::install_packages;
 use crate::cargo::{example, root};
 
 /// Names of Chromium, by system.
 const CHROMIUM: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
+
+/// Exit status of the test on WebGPU where the browser has no adapter.
+const NO_ADAPTER: i32 = 3;
+/// Largest mean FLIP of the device's picture from the processor's: samples at edges fall to either side.
+const MOST_FLIP: &str = "0.02";
 
 /// Tests the page; prints what was not tested. `setup` installs Debian's Chromium where there is none.
 pub fn test(setup: bool) -> bool {
@@ -18,7 +25,7 @@ pub fn test(setup: bool) -> bool {
     }
     let same = has_the_same_bits();
     let shown = match chromium(setup) {
-        Some(chromium) => is_shown(chromium),
+        Some(chromium) => is_shown(chromium, setup),
         None => {
             println!(
                 "NOT TESTED: the page in a browser, without Chromium (`cargo xtask web --setup --test` installs Debian's)"
@@ -74,11 +81,41 @@ fn has_the_same_bits() -> bool {
 }
 
 /// Opens the page in Chromium without a screen.
-fn is_shown(chromium: &str) -> bool {
+fn is_shown(chromium: &str, setup: bool) -> bool {
     println!("\n== the page in {chromium}");
     let Ok(address) = server::serve_beside(&site()) else {
         println!("the page is not served");
         return false;
     };
-    node("browser.mjs").args([chromium, &address]).status().is_ok_and(|status| status.success())
+    let shown = node("browser.mjs").args([chromium, &address]).status().is_ok_and(|status| status.success());
+    shown & is_shown_on_webgpu(chromium, &address, setup)
+}
+
+/// Opens the page on WebGPU, which is software where there is no GPU, and holds its picture to the processor's.
+fn is_shown_on_webgpu(chromium: &str, address: &str, setup: bool) -> bool {
+    println!("\n== the page on WebGPU in {chromium}");
+    let pictures = work().join("pictures");
+    if fs::create_dir_all(&pictures).is_err() {
+        println!("no folder: {}", pictures.display());
+        return false;
+    }
+    let status = node("gpu.mjs").args([chromium, address]).arg(&pictures).status();
+    match status.ok().and_then(|status| status.code()) {
+        Some(0) => looks_the_same(&pictures),
+        Some(NO_ADAPTER) => {
+            println!("NOT TESTED: the page on WebGPU, for which {chromium} has no adapter");
+            !setup
+        }
+        _ => false,
+    }
+}
+
+/// Holds the picture of the device to that of the processor.
+fn looks_the_same(pictures: &Path) -> bool {
+    let Some(mut flip) = example("web_flip") else {
+        println!("the program that compares pictures does not build");
+        return false;
+    };
+    flip.args(["device.ppm", "processor.ppm"].map(|name| pictures.join(name))).arg(MOST_FLIP);
+    flip.status().is_ok_and(|status| status.success())
 }

@@ -14,6 +14,9 @@ pub const TARGET: &str = "wasm32-unknown-unknown";
 /// Debian's compiler for browsers, and the sources of its standard library.
 const PACKAGES: [&str; 2] = ["rustc-web", "rust-web-src"];
 
+/// Flags of the compiler: vectors of four numbers are part of every browser since 2023.
+const FLAGS: &str = "-C target-feature=+simd128";
+
 /// A compiler for the page.
 #[derive(Debug)]
 pub struct Compiler {
@@ -22,10 +25,10 @@ pub struct Compiler {
 }
 
 impl Compiler {
-    /// Cargo for the page: vectors of four numbers are part of every browser since 2023.
+    /// Cargo for the page.
     pub fn cargo(&self, arguments: &[&str]) -> Command {
         let mut command = cargo_command(arguments);
-        command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", "-C target-feature=+simd128");
+        command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", FLAGS);
         if let Some([rustc, linker]) = &self.other {
             command.env("RUSTC", rustc).env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
         }
@@ -154,7 +157,10 @@ fn standard_library(folder: &Path) -> Result<()> {
     let compiler = Compiler { other: Some([tool("rustc"), tool("wasm-ld")]) };
     let words = ["build", "--release", "--target", TARGET, "-Z", "build-std=std,panic_abort"];
     let mut build = compiler.cargo(&words);
+    // The module is optimised as a whole, with what it takes of the standard library.
+    let flags = format!("{FLAGS} -C embed-bitcode=yes");
     build.current_dir(folder).env("RUSTC_BOOTSTRAP", "1").env_remove("CARGO_TARGET_DIR");
+    build.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", flags);
     ensure!(succeeds(&mut build), "the standard library does not compile");
     let Some(library) = library(&tool("rustc")) else { bail!("the compiler does not know {TARGET}") };
     fs::create_dir_all(&library)?;

@@ -61,12 +61,16 @@ fn problems(declaration: &Declaration) -> Vec<String> {
             problems.push(format!("{} at {} is not used by the shader", declared.name, declared.index));
         }
     }
-    let storage = declaration.bindings.iter().filter(|binding| binding.access.is_buffer()).count();
+    let storage = declaration.bindings.iter().filter(|binding| is_buffer(binding.access)).count();
     let most = wgpu::Limits::default().max_storage_buffers_per_shader_stage as usize;
     if storage > most {
         problems.push(format!("{storage} storage buffers, at most {most} are portable"));
     }
     problems
+}
+
+fn is_buffer(access: Access) -> bool {
+    matches!(access, Access::Read | Access::ReadWrite)
 }
 
 /// The stages of a pipeline and their entry points.

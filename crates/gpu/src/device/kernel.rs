@@ -19,13 +19,6 @@ pub enum Access {
     Written,
 }
 
-impl Access {
-    /// True for a buffer.
-    pub(crate) fn is_buffer(self) -> bool {
-        matches!(self, Self::Read | Self::ReadWrite)
-    }
-}
-
 /// One buffer of a kernel.
 #[derive(Clone, Debug)]
 pub struct Binding {

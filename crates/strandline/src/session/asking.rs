@@ -51,6 +51,17 @@ impl Session<Inline> {
         })
     }
 
+    /// Goes on on the CPU after a failure of the device, with the hair as it is.
+    ///
+    /// # Errors
+    /// The pictures take more memory than there is.
+    pub fn fall_back_after(&mut self, failure: &str) -> Result<(), Error> {
+        self.view.painter.fall_back_after(failure, &self.settings)?;
+        self.draft = None;
+        self.executor.simulation_mut().engine.fall_back_after(failure);
+        self.show()
+    }
+
     /// True where the device has so many steps before it that another frame would only come later.
     ///
     /// # Errors

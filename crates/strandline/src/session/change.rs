@@ -7,6 +7,7 @@ use crate::{
 
 /// A change of hair that plays. The next picture that is begun shows changes of the picture, the one after it changes of
 /// the motion.
+#[derive(Clone)]
 pub enum Change {
     /// Back to rest, and to the beginning of the motion.
     Reset,

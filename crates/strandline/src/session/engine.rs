@@ -206,7 +206,15 @@ impl Engine {
         }
     }
 
-    fn note(&mut self, failure: &SimError) {
+    /// Falls back to the CPU after a failure of the device, from the state that was last read and through the steps since.
+    pub fn fall_back_after(&mut self, failure: &str) {
+        if self.gpu().is_some() {
+            self.simulator.fall_back();
+            self.note(failure);
+        }
+    }
+
+    fn note(&mut self, failure: impl std::fmt::Display) {
         let time = self.simulator.time();
         self.notes.push(format!("falling back to the CPU, resuming from {time:.3} s: {failure}"));
     }

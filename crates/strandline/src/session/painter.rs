@@ -218,9 +218,16 @@ impl Painter {
         if !(self.fall_back && failure.is_of_gpu() && self.gpu().is_some()) {
             return Err(failure);
         }
-        let renderer = on_cpu(&self.strands, self.bound.as_ref(), self.mesh.as_deref(), settings)?;
-        self.place = Place::Cpu(renderer.into());
-        self.notes.push(format!("drawing on the CPU from here on: {failure}"));
+        self.fall_back_after(&failure.to_string(), settings)
+    }
+
+    /// Draws on the CPU from now on, after a failure of the device.
+    pub fn fall_back_after(&mut self, failure: &str, settings: &PictureSettings) -> Result<(), RenderError> {
+        if self.gpu().is_some() {
+            let renderer = on_cpu(&self.strands, self.bound.as_ref(), self.mesh.as_deref(), settings)?;
+            self.place = Place::Cpu(renderer.into());
+            self.notes.push(format!("drawing on the CPU from here on: {failure}"));
+        }
         Ok(())
     }
 }

@@ -202,3 +202,35 @@ fn a_host_that_never_waits_asks_instead() {
     pass(&mut hair);
     assert_eq!(gpu.waits(), waits, "nothing has waited");
 }
+
+/// The device is lost while hair is in a hand: the CPU goes on with the same hair.
+#[test]
+fn a_host_that_loses_its_device_goes_on_on_the_cpu() {
+    let Some(gpu) = gpu() else { return };
+    let mut hair = FrameLoop::with_device(prepared(), &gpu).unwrap();
+    gpu.never_wait();
+    let view = texture(&gpu, SIZE).create_view(&Default::default());
+    (0..3).for_each(|_| pass(&mut hair));
+    hair.draw_to(&view, FORMAT).unwrap();
+    let before = points(&mut hair);
+    let ray = ray(&hair, &before);
+    hair.change(Change::Grab(ray, 0.03)).unwrap();
+    gpu.destroy();
+    let error = hair.frame().unwrap_err().to_string();
+    assert!(error.contains("was lost") && hair.gpu().is_some(), "{error}");
+    hair.fall_back_after(&error).unwrap();
+    assert!(hair.gpu().is_none() && hair.waiting() == 1);
+    let again = points(&mut hair);
+    let apart = before.iter().zip(&again).map(|(one, other)| one.distance(*other)).fold(0.0, f32::max);
+    // Steps of the CPU from rest, held to those of the device.
+    assert!(apart < 1e-4, "{apart} m");
+    assert!(hair.frame().unwrap() && hair.waiting() == 0 && hair.grabbed() > 0);
+    hair.change(Change::Drag(Ray { origin: ray.origin + Vec3::X * 0.1, ..ray })).unwrap();
+    (0..4).for_each(|_| assert!(hair.frame().unwrap()));
+    let pulled = points(&mut hair);
+    let farthest = before.iter().zip(&pulled).map(|(one, other)| one.distance(*other)).fold(0.0, f32::max);
+    assert!(farthest > 0.05, "{farthest}");
+    assert!(!hair.picture(None).unwrap().0.is_blank());
+    let notes = hair.take_notes();
+    assert!(notes.iter().any(|note| note.contains("drawing on the CPU from here on")), "{notes:?}");
+}
