@@ -1038,6 +1038,10 @@ class LookShadow(TypedDict, total=False):
     body_softness: float
     """Depth over which that shadow grows to its full. Allowed: 1e-6 to 1 m."""
 
+    rays: int
+    """Rays from a place of skin at the edge of a shadow to a light with an area, shared out among its samples: each
+    gets one at least. Allowed: 1 to 256."""
+
 
 class LookEnvironment(TypedDict, total=False):
     """Light from all around: a sky above and a ground below, even between."""

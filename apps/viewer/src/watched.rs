@@ -97,7 +97,7 @@ mod tests {
         assert!(watch.changed().is_empty(), "it may still be written");
         std::fs::write(&groom, b"two, and longer yet").unwrap();
         assert!(watch.changed().is_empty(), "it was");
-        assert_eq!(watch.changed(), [groom.clone()]);
+        assert_eq!(watch.changed(), std::slice::from_ref(&groom));
         assert!(watch.changed().is_empty(), "once");
         // A file that comes counts, one that goes is waited for.
         std::fs::remove_file(&groom).unwrap();

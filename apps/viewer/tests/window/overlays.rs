@@ -35,7 +35,7 @@ fn most(values: &[f32]) -> f32 {
 #[test]
 fn overlays_are_chosen_by_their_names_and_have_numbers_of_the_hair() {
     let mut window = Window::still();
-    let guides = scene().style.strand_count as usize;
+    let guides = scene().style.strand_count;
     choose(&mut window, Overlay::Guides);
     let overlaid = window.app().shown().unwrap().overlaid.clone().unwrap();
     let each = overlaid.points_per_strand;

@@ -5,6 +5,7 @@ mod nearest;
 mod picture;
 
 pub(crate) use light_view::{LightView, Window, stepped_down};
+pub(crate) use nearest::NOTHING;
 
 use glam::{Vec2, Vec3, Vec4};
 use strandline_base::par::{self, prelude::*};
@@ -14,8 +15,6 @@ use crate::Shadow;
 use crate::fast_math::exp;
 use crate::lanes::split_texel;
 
-/// Depth \[m\] of a texel that holds nothing.
-pub(crate) const NOTHING: f32 = 1e30;
 /// Most parts that the strands of a map are shared out to; each part fills a map of its own.
 const MOST_PARTS: usize = 8;
 

@@ -3,8 +3,8 @@
 
 use strandline_base::par::prelude::*;
 
-use super::NOTHING;
-
+/// Depth \[m\] of a texel that holds nothing.
+pub(crate) const NOTHING: f32 = 1e30;
 /// Texels along a side of a block, as a power of two.
 const SHIFT: usize = 3;
 

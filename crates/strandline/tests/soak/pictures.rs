@@ -106,8 +106,11 @@ impl Person {
                 }
                 LiveEvent::Saved(_) => self.saved += 1,
                 LiveEvent::Paused => panic!("it stopped by itself"),
-                LiveEvent::Note(_) | LiveEvent::Recorded | LiveEvent::Exported(_) | LiveEvent::Touched(_) => {
-                }
+                LiveEvent::Loading(..)
+                | LiveEvent::Note(_)
+                | LiveEvent::Recorded
+                | LiveEvent::Exported(_)
+                | LiveEvent::Touched(_) => {}
             }
         }
     }
