@@ -2,28 +2,29 @@
 
 use glam::Vec3;
 use strandline_checks::law;
-use strandline_groom::{LANES, Vec3Lanes};
+use strandline_groom::LANES;
 use strandline_sim::{State, VolumeMethod};
 
 use crate::volume::wisps;
 
-/// Positions of all points, to the bit.
-fn bits(state: &State) -> Vec<[u32; 3]> {
-    let lanes =
-        |at: &Vec3Lanes| (0..LANES).map(|lane| at.get(lane).to_array().map(f32::to_bits)).collect::<Vec<_>>();
-    state.positions.iter().flat_map(lanes).collect()
+/// The largest distance \[m\] between the same points.
+fn farthest(one: &State, other: &State) -> f32 {
+    let pairs = one.positions.iter().zip(&other.positions);
+    let each = pairs.flat_map(|(a, b)| (0..LANES).map(move |lane| a.get(lane).distance(b.get(lane))));
+    each.fold(0.0, f32::max)
 }
 
 law! {
     long fn wisps_that_part_or_slide_past_each_other_do_not_feel_it(on) {
         for way in [Vec3::NEG_X, Vec3::Y] {
-            let [with, without] =
-                [Some(VolumeMethod::OneSided), None].map(|method| bits(&wisps(on, method, way)));
-            assert!(with == without, "{way}");
+            let [with, without] = [Some(VolumeMethod::OneSided), None].map(|method| wisps(on, method, way));
+            // An H200 rounds one of them otherwise.
+            let far = farthest(&with, &without);
+            assert!(far <= on.exact_or(0.0, 1e-6), "{way}: {far} m");
         }
         // The incompressible volume holds both back.
         let [with, without] =
-            [Some(VolumeMethod::Incompressible), None].map(|method| bits(&wisps(on, method, Vec3::Y)));
-        assert!(with != without);
+            [Some(VolumeMethod::Incompressible), None].map(|method| wisps(on, method, Vec3::Y));
+        assert!(farthest(&with, &without) > 1e-3);
     }
 }

@@ -74,13 +74,10 @@ pub fn stepped(on: &On, model: &Model, seconds: f32, motion: impl Fn(f64) -> Pos
     let drives: Vec<_> = (1..=(seconds / step).round() as u32).map(drive).collect();
     for report in rig.steps(&drives) {
         assert_eq!(report.non_finite, 0);
-        // Found on a software GPU: 0.16 % in seven of 720 steps of the tied ponytail, whose hair is held at both ends; the
-        // short form has no ponytail there.
-        assert!(
-            report.stretch_max < on.either(1e-3, if in_full() { 2e-3 } else { 1e-3 }),
-            "stretched by {}",
-            report.stretch_max
-        );
+        // Found on GPUs, a software adapter and an H200: 0.16 % in seven of 720 steps of the tied ponytail, whose hair is
+        // held at both ends; the short form has no ponytail there.
+        let most = if in_full() { 2e-3 } else { 1e-3 };
+        assert!(report.stretch_max < most, "stretched by {}", report.stretch_max);
     }
     rig.state().clone()
 }
@@ -148,12 +145,13 @@ law! {
         let styles = [Style::Wavy, Style::Ponytail, Style::Bob, Style::Curly, Style::Long, Style::Pixie];
         for name in styles.into_iter().take(on.short(on.brief(6, 2), 1)) {
             // Rubbing of 0.2 m/s^2 and a body that holds hair by 0.3 of its weight; and without rubbing.
-            for (friction, rubbing, bound) in [(0.3, 0.2, 3e-2), (0.0, 0.0, 1e-2)] {
+            for (friction, rubbing, bound) in [(0.3, 0.2, 3e-2), (0.0, 0.0, 2e-2)] {
                 let mut settings = settings(StrandMethod::Rods, 1.0 / 60.0);
                 settings.strands.rods.rubbing = rubbing;
                 let model = on_a_body(name, &settings, 120, friction);
                 let (mean, _) = drift(&model, &stepped(on, &model, ends + on.either(4.0, 2.0), motion));
-                // Found on the CPU: 0.01 % (pixie) to 1.0 % (ponytail); without friction 0 to 0.24 %. Single strands lie
+                // Found on the CPU: 0.01 % (pixie) to 1.0 % (ponytail); without friction 0 to 0.24 %, and 1.2 % (long)
+                // since air has units, through which it creeps back for longer than this. Single strands lie
                 // on another side of an ear or of the strands beside them: up to 0.42 of a length.
                 assert!(mean < bound, "{name:?}, friction {friction}: {mean} from where it was");
             }

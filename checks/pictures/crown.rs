@@ -176,7 +176,7 @@ law! {
 }
 
 law! {
-    fn blonde_hair_is_brighter_from_behind_than_from_the_front(on) {
+    long fn blonde_hair_is_brighter_from_behind_than_from_the_front(on) {
         let [glow, _] = shown(on, Preset::Blonde);
         // 1 is asked for; 1.4 is left where light does not go through fibres.
         assert!(glow >= 2.0, "{glow}");

@@ -341,7 +341,7 @@ fn on_head(on: &On, name: &str, lights: Vec<Light>, map_size: u32) -> Option<Mea
 }
 
 law! {
-    fn a_head_in_a_studio_is_lit_as_path_tracing_lights_it(on) {
+    long fn a_head_in_a_studio_is_lit_as_path_tracing_lights_it(on) {
         let soft = panel([-0.9, 1.25, 1.35], 0.7, [42.0, 39.0, 36.0]);
         let rim = panel([1.1, 1.2, -1.2], 0.4, [70.0, 74.0, 78.0]);
         let Some(found) = on_head(on, "brown_studio", vec![soft, rim], 1024) else { return };

@@ -11,7 +11,8 @@ use strandline::{Backend, Hair, Prepared, Scene};
 use strandline_body::{Mannequin, SignedDistance};
 use strandline_checks::in_full;
 use strandline_groom::{LANES, Style};
-use strandline_render::{BodyLook, Camera, Layers, Light, PictureSettings};
+use strandline_render::fibre::FibreModel;
+use strandline_render::{BodyLook, Camera, Layers, Light, Look, PictureSettings};
 
 use crate::linear::{Linear, channel};
 
@@ -56,9 +57,9 @@ impl Head {
         Self { hair: Hair::from_prepared(prepared, Backend::Cpu).unwrap(), roots, scene }
     }
 
-    fn seen(&mut self, camera: &Camera, lights: &[Light]) -> Layers {
+    fn seen(&mut self, camera: &Camera, look: &Look, lights: &[Light]) -> Layers {
         self.hair.set_lights(lights.to_vec()).unwrap();
-        let (_, report) = self.hair.picture_with_report(camera, &self.scene.look).unwrap();
+        let (_, report) = self.hair.picture_with_report(camera, look).unwrap();
         Arc::unwrap_or_clone(report.layers.unwrap())
     }
 }
@@ -82,7 +83,10 @@ fn views(count: usize) -> Vec<Camera> {
 /// Pixels of the haired scalp, and the share of them that no hair covers.
 fn bare(head: &mut Head, mannequin: &Mannequin, camera: &Camera) -> (f32, f32) {
     let light = Light { shadow: false, ..Light::three_point(Vec3::ZERO)[2] };
-    let layers = head.seen(camera, &[light]);
+    // What covers does not depend on light, which takes this fibre a hundredth of the time.
+    let mut look = head.scene.look.clone();
+    look.fibre.model = FibreModel::Scheuermann;
+    let layers = head.seen(camera, &look, &[light]);
     let covered = channel(&layers, "mask.hair");
     let scalp = mannequin.scalp();
     let (mut haired, mut open) = (0.0, 0.0);
@@ -166,7 +170,8 @@ const BLACK: BodyLook = BodyLook {
 /// and than hair beyond the roots beside them.
 fn bright(head: &mut Head, skin: BodyLook, camera: &Camera, lights: &[Light]) -> [usize; 3] {
     head.hair.set_body_look(skin).unwrap();
-    let layers = head.seen(camera, lights);
+    let look = head.scene.look.clone();
+    let layers = head.seen(camera, &look, lights);
     let [mask, depth, id] = ["mask.hair", "depth.Z", "strand.id"].map(|name| channel(&layers, name));
     let follow = head.scene.look.follow_strands as usize;
     let light = Linear::of(&layers).pixels;

@@ -80,7 +80,7 @@ fn not_tested(why: &str, required: Option<&OsStr>) {
 
 /// Prints a line to stderr that the running test is one of `cargo xtask long` on this adapter.
 pub fn left_to_long() {
-    print(&line("a software adapter takes long: `cargo xtask long laws`"));
+    print(&line("a software adapter takes long: `cargo xtask long`"));
 }
 
 fn line(why: &str) -> String {

@@ -44,6 +44,8 @@ fn scene() -> Scene {
     scene.look.dress(strandline::look::Preset::Thesis);
     (scene.picture.width, scene.picture.height) = (64, 48);
     scene.look.shadow.map_size = 128;
+    // Kept frames fill what they may within the first pictures.
+    (scene.timeline.memory, scene.timeline.disk) = (1, 0);
     scene
 }
 

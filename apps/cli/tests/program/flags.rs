@@ -73,7 +73,7 @@ fn every_command_that_reads_a_groom_takes_points_of_a_strand() {
     for command in ["sim", "render"] {
         let size: &[&str] = if command == "render" { &["--size", "32x24", "--out", "a.png"] } else { &[] };
         let run = [&[command, "--groom", "bare.ply"][..], &small, size].concat();
-        fails(at, &run, 1, &["--per-strand N"]);
+        fails(at, &run, 1, &["--per-strand 20"]);
         works(at, &[&run[..], &["--per-strand", "20"]].concat());
     }
     let report =

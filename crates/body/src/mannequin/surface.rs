@@ -7,7 +7,7 @@ use super::model::Mannequin;
 use crate::{Mesh, SignedDistance};
 
 /// Spacing of the samples \[m\].
-const SPACING: f32 = 0.0044;
+const SPACING: f32 = 0.0022;
 /// Newton steps that carry the vertices onto the skin.
 const NEWTON_STEPS: usize = 4;
 /// No step is longer \[m\], so that a vertex in a crease stays there.
@@ -16,7 +16,12 @@ const LONGEST_STEP: f32 = 0.004;
 impl Mannequin {
     /// The surface as triangles: closed, refined onto the skin, with normals from the gradient.
     pub fn mesh(&self) -> Mesh {
-        mesh(self)
+        mesh(self, SPACING)
+    }
+
+    /// As [`Mannequin::mesh`], of samples twice as far apart: to be split where the skin has details.
+    pub(super) fn coarse_mesh(&self) -> Mesh {
+        mesh(self, 2.0 * SPACING)
     }
 
     /// Carries a place near the skin \[m\] onto it: the place on the skin and its unit normal.
@@ -25,19 +30,19 @@ impl Mannequin {
     }
 }
 
-/// Meshes the skin.
-fn mesh(mannequin: &Mannequin) -> Mesh {
+/// Meshes the skin by samples so far \[m\] apart.
+fn mesh(mannequin: &Mannequin, spacing: f32) -> Mesh {
     let bounds = mannequin.bounds();
-    let origin = bounds.min - Vec3::splat(2.0 * SPACING);
-    let size = ((bounds.max - origin) / SPACING).as_uvec3() + UVec3::splat(4);
-    let samples = sample(mannequin, origin, size);
+    let origin = bounds.min - Vec3::splat(2.0 * spacing);
+    let size = ((bounds.max - origin) / spacing).as_uvec3() + UVec3::splat(4);
+    let samples = sample(mannequin, origin, size, spacing);
     let mut buffer = SurfaceNetsBuffer::default();
     let shape = RuntimeShape::<u32, 3>::new(size.to_array());
     surface_nets(&samples, &shape, [0; 3], (size - UVec3::ONE).to_array(), &mut buffer);
     let (positions, normals): (Vec<Vec3>, Vec<Vec3>) = buffer
         .positions
         .par_iter()
-        .map(|&cell| settle(mannequin, origin + Vec3::from_array(cell) * SPACING))
+        .map(|&cell| settle(mannequin, origin + Vec3::from_array(cell) * spacing))
         .unzip();
     let triangles = buffer.indices.chunks_exact(3).map(|corner| [corner[0], corner[1], corner[2]]).collect();
     Mesh { positions, normals, triangles, ..Mesh::default() }
@@ -47,14 +52,14 @@ fn mesh(mannequin: &Mannequin) -> Mesh {
 const BRICKS: [u32; 2] = [8, 2];
 
 /// Values on a grid, x fastest. Bricks that the skin cannot reach are filled from one sample.
-fn sample(mannequin: &Mannequin, origin: Vec3, size: UVec3) -> Vec<f32> {
+fn sample(mannequin: &Mannequin, origin: Vec3, size: UVec3, spacing: f32) -> Vec<f32> {
     let layer = (size.x * size.y) as usize;
     let mut samples = vec![0.0; layer * size.z as usize];
     let depth = BRICKS[0] as usize;
     samples.par_chunks_mut(layer * depth).enumerate().for_each(|(slab, values)| {
         let first_layer = (slab * depth) as u32;
         let size = UVec3::new(size.x, size.y, (values.len() / layer) as u32);
-        let mut slab = Slab { mannequin, origin, first_layer, size, values };
+        let mut slab = Slab { mannequin, origin, spacing, first_layer, size, values };
         slab.fill(UVec3::ZERO, size, &BRICKS);
     });
     samples
@@ -65,6 +70,8 @@ struct Slab<'a> {
     mannequin: &'a Mannequin,
     /// Place of the grid's first sample \[m\].
     origin: Vec3,
+    /// Spacing of the samples \[m\].
+    spacing: f32,
     first_layer: u32,
     size: UVec3,
     values: &'a mut [f32],
@@ -74,7 +81,7 @@ impl Slab<'_> {
     /// Fills a box in bricks of the first size given, and what the skin may reach in the next smaller ones.
     fn fill(&mut self, from: UVec3, to: UVec3, bricks: &[u32]) {
         let Some((&side, smaller)) = bricks.split_first() else { return self.write(from, to, None) };
-        let reach = 0.5 * side as f32 * SPACING * 3f32.sqrt();
+        let reach = 0.5 * side as f32 * self.spacing * 3f32.sqrt();
         let starts = |axis: usize| (from[axis]..to[axis]).step_by(side as usize);
         for z in starts(2) {
             for (y, x) in starts(1).flat_map(|y| starts(0).map(move |x| (y, x))) {
@@ -94,7 +101,7 @@ impl Slab<'_> {
     /// A place \[m\] from a place in the slab \[cells\].
     fn place(&self, mut at: Vec3) -> Vec3 {
         at.z += self.first_layer as f32;
-        self.origin + at * SPACING
+        self.origin + at * self.spacing
     }
 
     /// Writes a value to a box, or the ones that are there.

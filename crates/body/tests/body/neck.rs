@@ -53,7 +53,7 @@ fn shoulders_stay_and_the_head_moves_as_one() {
                 still += 1;
             }
         }
-        assert!(still > 3_000 && rigid > 5_000, "{still} {rigid}");
+        assert!(still > 5_000 && rigid > 20_000, "{still} {rigid}");
     }
     assert!(!MovedSkin::default().take(&MESH, &frame([0.0; 3])), "at rest to the bit");
     assert_eq!(MESH.positions_in(&frame([0.0, 35.0, 0.0])), skin([0.0, 35.0, 0.0])[0]);
@@ -153,7 +153,7 @@ fn parts_at_rest_are_the_bust() {
         }
     }
     assert!(worst < 2e-3, "{worst} m");
-    assert!(same > 5_000, "{same}");
+    assert!(same > 20_000);
 }
 
 /// The planes that cut a part out are never farther than the part, and tell of most of the bust that it is far.
