@@ -83,7 +83,7 @@ fn views(count: usize) -> Vec<Camera> {
 /// Pixels of the haired scalp, and the share of them that no hair covers.
 fn bare(head: &mut Head, mannequin: &Mannequin, camera: &Camera) -> (f32, f32) {
     let light = Light { shadow: false, ..Light::three_point(Vec3::ZERO)[2] };
-    // What covers does not depend on light, which takes this fibre a hundredth of the time.
+    // Coverage does not depend on light, which takes this fibre a hundredth of the time.
     let mut look = head.scene.look.clone();
     look.fibre.model = FibreModel::Scheuermann;
     let layers = head.seen(camera, &look, &[light]);

@@ -229,7 +229,7 @@ def test_research_layouts_come_back(tmp_path, points, layout):
 def test_bare_points_say_what_they_lack(tmp_path, points):
     Groom(points).resampled(100).save(tmp_path / "a.ply", layout="neural")
     for given in ({}, {"points_per_strand": 7}):
-        with pytest.raises(Error, match="`points_per_strand=N`"):
+        with pytest.raises(Error, match="points_per_strand="):
             strandline.load(tmp_path / "a.ply", **given)
 
 

@@ -67,7 +67,9 @@ pub fn show(app: &mut App, ui: &egui::Ui, room: Rect) {
             }
             let Some(error) = app.error.clone() else { return };
             ui.horizontal_wrapped(|ui| {
-                ui.colored_label(ui.visuals().error_fg_color, error);
+                let dark = ui.visuals().dark_mode;
+                let color = if dark { egui::Color32::LIGHT_RED } else { ui.visuals().error_fg_color };
+                ui.colored_label(color, error);
                 is_put_away = ui.small_button("x").on_hover_text("puts the message away").clicked();
             });
             wanted = buttons(ui, &app.mended.mends).map(|mend| (mend, true)).or(wanted.take());

@@ -61,7 +61,7 @@ fn panel(window: &Window, index: usize) -> Rect {
 fn pictures_of_the_panels_show_each_section_whole() {
     let folder = std::env::var_os("STRANDLINE_PANELS").map(std::path::PathBuf::from);
     let height = 1500.0;
-    // Where no picture is written the places of controls are all that is looked at.
+    // The places of controls are all that is looked at where no picture is written.
     let scale = if folder.is_some() { SCALE } else { 0.5 };
     let mut window = Window::of_size(scene(), egui::vec2(620.0, height), scale);
     window.until("a picture", |app| app.shown().is_some());
