@@ -102,8 +102,10 @@ fn files_are_dropped_and_a_bad_one_says_so_while_the_old_hair_stays() {
     std::fs::write(&bad, b"PK nothing").unwrap();
     person.drop_file(&bad);
     let red = |screen: &Screen| screen.count(MESSAGES, |pixel| pixel == [255, 128, 128]);
-    let shown = person.see("the error", |screen| red(screen) > 50);
-    assert!(shown.changed(&still, STAGE) < 3000, "the old hair stays");
+    // A picture that was simpler while it moved may be finer by then, which changes fewer pixels than other hair.
+    person.see("the error and the old hair", |screen| {
+        red(screen) > 50 && screen.changed(&still, STAGE) < 12_000
+    });
 
     let groom = folder.join("pixie.hair");
     let style = StyleSettings::new(strandline::Style::Pixie);
