@@ -90,8 +90,6 @@ pub struct App {
     pub(crate) finding: found::Finding,
     pub(crate) recent: recent::Recent,
     pub(crate) compare: Option<compared::Compare>,
-    /// Views that are kept.
-    pub(crate) views: Vec<Camera>,
     /// Folder of the next picture and scene.
     pub folder: PathBuf,
 }
@@ -138,7 +136,6 @@ impl App {
             finding: found::Finding::default(),
             recent: recent::Recent::default(),
             compare: None,
-            views: Vec::new(),
             live,
             context,
             base: scene.clone(),

@@ -9,5 +9,12 @@ pub struct Finding {
     pub looked_for: String,
     pub found: Vec<Found>,
     /// The value that is being dragged or typed, by its key.
-    pub edited: Option<(String, f64)>,
+    pub edited: Option<(String, Edited)>,
+}
+
+/// A value that is being dragged or typed.
+#[derive(Clone)]
+pub enum Edited {
+    Number(f64),
+    Text(String),
 }

@@ -6,7 +6,7 @@ use eframe::egui::Ui;
 use strandline::Camera;
 use strandline::edit::{load_look, save_look};
 use strandline::math::atan2;
-use strandline::scene::{CameraKeyframe, Interpolation};
+use strandline::scene::{CameraKeyframe, Interpolation, KeptView};
 
 use crate::{
     App,
@@ -87,21 +87,27 @@ pub fn views(app: &mut App, ui: &mut Ui) {
     lens(app, ui);
     let mut gone = None;
     ui.horizontal_wrapped(|ui| {
-        if button(ui, "Keep view", "adds the present view to this list") {
-            app.views.push(app.camera);
+        if button(ui, "Keep view", "adds the present view to this list, which the scene keeps") {
+            let list = &mut app.scene.camera.kept;
+            let Camera { position, target, field_of_view, .. } = app.camera;
+            // The first number that none has: one may have been taken off.
+            let mut names = (1..).map(|number| format!("view {number}"));
+            let name = names.find(|name| list.iter().all(|view| view.name != *name)).unwrap_or_default();
+            list.push(KeptView { name, position, target, field_of_view });
         }
         if button(ui, "Turntable", "the camera turns once around the hair in the film, evenly") {
             app.turntable();
         }
-        for (index, camera) in app.views.clone().into_iter().enumerate() {
-            let response = ui.button(format!("view {}", index + 1));
+        for (index, view) in app.scene.camera.kept.clone().into_iter().enumerate() {
+            let response = ui.button(&view.name);
             if response.clicked() {
-                viewport::look(app, camera);
+                let KeptView { position, target, field_of_view, .. } = view;
+                viewport::look(app, Camera { position, target, field_of_view, ..app.camera });
             }
             if response.on_hover_text("goes there; a right click takes it off the list").secondary_clicked() {
                 gone = Some(index);
             }
         }
     });
-    gone.map(|index| app.views.remove(index));
+    gone.map(|index| app.scene.camera.kept.remove(index));
 }

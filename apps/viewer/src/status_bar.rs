@@ -5,7 +5,19 @@ use strandline::file::counted;
 
 use crate::{App, loading};
 
+/// Draws the bar. In a window of some width it never becomes lower, or the picture above it would change its size, and be
+/// drawn anew, with every word that comes and goes.
 pub fn show(app: &App, ui: &mut egui::Ui) {
+    let (id, width) = (ui.scope_id().with("height"), ui.available_width());
+    let (before, tallest) = ui.data(|data| data.get_temp(id)).unwrap_or((width, 0.0));
+    let least = if before == width { tallest } else { 0.0 };
+    ui.set_min_height(least);
+    words(app, ui);
+    let height = ui.min_rect().height().max(least);
+    ui.data_mut(|data| data.insert_temp(id, (width, height)));
+}
+
+fn words(app: &App, ui: &mut egui::Ui) {
     ui.horizontal_wrapped(|ui| {
         loading::progress(app, ui);
         let Some(shown) = &app.shown else { return };

@@ -3,7 +3,12 @@
 use eframe::egui::{self, Color32, DragValue, Rect, Sense, Stroke, Ui, WidgetInfo, accesskit::Role};
 use strandline::live::{Command, Pace, TimelineShown};
 
-use crate::{App, controls::button, playback::Playback};
+use crate::{
+    App,
+    controls::button,
+    keys,
+    playback::{Playback, frame_at, place},
+};
 
 /// Height of the bar \[point\].
 const HEIGHT: f32 = 18.0;
@@ -96,7 +101,9 @@ pub fn show(app: &mut App, ui: &mut Ui) {
         }
         words(app, &timeline, ui);
     });
-    bar(app, &timeline, ui);
+    let end = timeline.film_end.max(timeline.last).max(1);
+    bar(app, &timeline, end, ui);
+    keys::strips(app, &timeline, end, ui);
 }
 
 /// Frame, time and room of the timeline.
@@ -126,12 +133,11 @@ fn words(app: &mut App, timeline: &TimelineShown, ui: &mut Ui) {
     ));
 }
 
-fn bar(app: &mut App, timeline: &TimelineShown, ui: &mut Ui) {
+fn bar(app: &mut App, timeline: &TimelineShown, end: u32, ui: &mut Ui) {
     let width = ui.available_width().max(1.0);
     let (rect, response) = ui.allocate_exact_size(egui::vec2(width, HEIGHT), Sense::click_and_drag());
     let playhead = app.playhead();
     response.widget_info(|| WidgetInfo::slider(true, f64::from(playhead), "timeline"));
-    let end = timeline.film_end.max(timeline.last).max(1);
     if let Some(pointer) =
         response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked())
     {
@@ -142,7 +148,7 @@ fn bar(app: &mut App, timeline: &TimelineShown, ui: &mut Ui) {
     }
     let painter = ui.painter();
     let span = |from: u32, to: u32, inset: f32, colour: Color32| {
-        let [left, right] = [from, to].map(|frame| place(frame, rect, end));
+        let [left, right] = [from, to].map(|frame| place(f64::from(frame), rect, end));
         let part = Rect::from_min_max(
             egui::pos2(left, rect.top() + inset),
             egui::pos2(right, rect.bottom() - inset),
@@ -154,31 +160,7 @@ fn bar(app: &mut App, timeline: &TimelineShown, ui: &mut Ui) {
     span(first.unwrap_or(0), last.unwrap_or(timeline.film_end).min(end), 0.0, PLAYED);
     span(timeline.good.max(timeline.first), timeline.last, 5.0, STALE);
     span(timeline.first, timeline.good, 5.0, KEPT);
-    let x = place(playhead, rect, end);
+    let x = place(f64::from(playhead), rect, end);
     painter.line_segment([egui::pos2(x, rect.top()), egui::pos2(x, rect.bottom())], Stroke::new(2.0, HEAD));
     response.on_hover_text("drag: shows a frame that is kept\nblue: kept; brown: stale, simulated again when it plays\ndefault 0");
-}
-
-/// Place \[point\] of a frame along a bar that ends with another.
-fn place(frame: u32, bar: Rect, end: u32) -> f32 {
-    bar.left() + bar.width() * (frame.min(end) as f32 / end as f32)
-}
-
-/// The frame at a place \[point\] along a bar.
-fn frame_at(x: f32, bar: Rect, end: u32) -> u32 {
-    (((x - bar.left()) / bar.width()).clamp(0.0, 1.0) * end as f32).round() as u32
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn places_and_frames_of_a_bar_belong_together() {
-        let bar = Rect::from_min_size(egui::pos2(300.0, 0.0), egui::vec2(600.0, HEIGHT));
-        for frame in [0, 1, 60, 119, 120] {
-            assert_eq!(frame_at(place(frame, bar, 120), bar, 120), frame);
-        }
-        assert_eq!([frame_at(0.0, bar, 120), frame_at(9999.0, bar, 120)], [0, 120]);
-    }
 }

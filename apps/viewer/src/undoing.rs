@@ -13,6 +13,10 @@ pub enum Part {
     Look,
     Lights,
     Detail,
+    Groom,
+    Body,
+    Surroundings,
+    Film,
 }
 
 impl Part {
@@ -30,6 +34,25 @@ impl Part {
             Self::Lights => {
                 scene.lights.clone_from(&other.lights);
                 scene.body_look = other.body_look;
+            }
+            Self::Groom => {
+                let length = scene.groom.length;
+                scene.groom.clone_from(&other.groom);
+                scene.groom.length = length;
+                scene.style.clone_from(&other.style);
+            }
+            Self::Body => {
+                scene.body.clone_from(&other.body);
+                scene.body_look = other.body_look;
+            }
+            Self::Surroundings => {
+                scene.surroundings.clone_from(&other.surroundings);
+                scene.look.surroundings.clone_from(&other.look.surroundings);
+            }
+            Self::Film => {
+                let kept = std::mem::take(&mut scene.camera.kept);
+                (scene.film, scene.camera) = (other.film, other.camera.clone());
+                scene.camera.kept = kept;
             }
             Self::Detail => {
                 scene.level_of_detail = other.level_of_detail;
@@ -101,10 +124,20 @@ impl App {
         }
     }
 
+    /// Changes the scene to another as a step: by changes, or by loading it, seen from where it is seen.
+    pub(crate) fn apply(&mut self, mut scene: Scene) {
+        (scene.picture.width, scene.picture.height) = (self.scene.picture.width, self.scene.picture.height);
+        if changes(&self.scene, &scene).is_some() {
+            return self.restore(scene);
+        }
+        self.keeps_view = true;
+        self.load(scene);
+    }
+
     /// Sets a part of the scene to that of another.
     pub(crate) fn reset_part(&mut self, part: Part, to: &Scene) {
         let scene = part.of(&self.scene, to);
-        self.restore(scene);
+        self.apply(scene);
     }
 }
 

@@ -7,6 +7,7 @@ mod motion;
 mod save;
 mod scene;
 mod simulation;
+mod table;
 
 use eframe::egui::{self, ThemePreference, Ui};
 use strandline::{Change, live::Command};
@@ -14,7 +15,7 @@ use strandline::{Change, live::Command};
 use crate::{
     App, brushing, compare,
     controls::{button, section},
-    finding, looks,
+    finding, keys, looks,
     undoing::{self, Part},
 };
 
@@ -28,20 +29,25 @@ pub fn show(app: &mut App, ui: &mut Ui) {
         play(app, ui);
         finding::show(app, ui);
         section(ui, "Scene", true, |ui| scene::show(app, ui));
+        panel(app, ui, "Groom", false, Part::Groom, table::groom);
+        panel(app, ui, "Body", false, Part::Body, table::body);
         section(ui, "Brushes", false, |ui| brushing::panel(app, ui));
         panel(app, ui, "Motion", true, Part::Motion, motion::show);
         panel(app, ui, "Simulation", false, Part::Simulation, simulation::show);
         panel(app, ui, "Look", true, Part::Look, look::show);
         panel(app, ui, "Lights", false, Part::Lights, lights::show);
+        panel(app, ui, "Surroundings", false, Part::Surroundings, table::surroundings);
         panel(app, ui, "Detail", false, Part::Detail, detail::show);
         section(ui, "View", false, |ui| {
             looks::views(app, ui);
+            keys::list(app, ui);
             compare::controls(app, ui);
         });
+        panel(app, ui, "Film", false, Part::Film, table::film);
         section(ui, "Save", false, |ui| save::show(app, ui));
         section(ui, "Steps", false, |ui| undoing::show(app, ui));
         section(ui, "Window", false, window);
-        section(ui, "Keys", false, keys);
+        section(ui, "Keys", false, keyboard);
     });
 }
 
@@ -113,7 +119,7 @@ fn window(ui: &mut Ui) {
     });
 }
 
-fn keys(ui: &mut Ui) {
+fn keyboard(ui: &mut Ui) {
     let keys = [
         ("space", "play, pause"),
         (".", "one frame"),

@@ -10,10 +10,9 @@ use strandline::{
 use crate::{
     App,
     controls::{about, button, slide, slide_in},
+    keys::SHORTEST,
 };
 
-/// Least time between two poses \[s\].
-const SHORTEST: f64 = 0.01;
 pub fn show(app: &mut App, ui: &mut Ui) {
     let before = app.scene.motion.clone();
     names(&mut app.scene.motion, ui);

@@ -8,6 +8,7 @@ mod overlays;
 mod panels;
 mod person;
 mod pictures;
+mod table;
 mod tasks;
 mod timeline;
 

@@ -166,6 +166,21 @@ impl Window {
         self.harness.step();
     }
 
+    /// Clicks a label with the right button.
+    pub fn right_click(&mut self, label: &str) {
+        self.steps += 1;
+        let place = self.control(Role::Label, label).rect().center();
+        for pressed in [true, false] {
+            let press = egui::Event::PointerButton {
+                pos: place,
+                button: egui::PointerButton::Secondary,
+                pressed,
+                modifiers: egui::Modifiers::NONE,
+            };
+            self.pass(vec![egui::Event::PointerMoved(place), press], None);
+        }
+    }
+
     /// Sets a slider to a value.
     pub fn slide(&mut self, label: &str, value: f64) {
         self.steps += 1;
@@ -188,7 +203,7 @@ impl Window {
 
     /// True where a label with this text is seen.
     pub fn has_label(&self, text: &str) -> bool {
-        self.harness.query_by_label(text).is_some()
+        self.harness.query_all_by_label(text).next().is_some()
     }
 
     /// True where a label that contains this text is seen.

@@ -8,15 +8,19 @@ use strandline::{Scene, live::Overlay};
 use crate::person::{Window, scene};
 
 /// Sections of the panel, from the top, and whether they are open at first.
-const SECTIONS: [(&str, bool); 12] = [
+const SECTIONS: [(&str, bool); 16] = [
     ("Scene", true),
+    ("Groom", false),
+    ("Body", false),
     ("Brushes", false),
     ("Motion", true),
     ("Simulation", false),
     ("Look", true),
     ("Lights", false),
+    ("Surroundings", false),
     ("Detail", false),
     ("View", false),
+    ("Film", false),
     ("Save", false),
     ("Steps", false),
     ("Window", false),

@@ -17,6 +17,8 @@ pub fn changes(from: &Scene, to: &Scene) -> Option<Vec<Change>> {
     near.lights.clone_from(&to.lights);
     near.groom.length = to.groom.length;
     near.film.frames = to.film.frames;
+    near.camera.keyframes.clone_from(&to.camera.keyframes);
+    near.camera.kept.clone_from(&to.camera.kept);
     let PictureSettings { width, height, .. } = from.picture;
     near.picture = PictureSettings { width, height, ..to.picture };
     let sized = Scene { picture: near.picture, ..to.clone() };
@@ -36,6 +38,8 @@ pub fn changes(from: &Scene, to: &Scene) -> Option<Vec<Change>> {
         add(from.wind != to.wind, &|| Change::Wind(to.wind.clone()));
         add(from.motion != to.motion, &|| Change::Motion(Box::new(to.motion.clone())));
         add(from.simulation != to.simulation, &|| Change::Settings(Box::new(to.simulation.clone())));
+        let keys = &to.camera.keyframes;
+        add(from.camera.keyframes != *keys, &|| Change::CameraKeys(keys.clone()));
         add(from.look != to.look, &|| Change::Look(Box::new(to.look.clone())));
         add(from.body_look != to.body_look, &|| Change::BodyLook(to.body_look));
         add(from.level_of_detail != to.level_of_detail, &|| Change::LevelOfDetail(to.level_of_detail));

@@ -60,7 +60,8 @@ fn refused(message: &str) -> Option<Vec<(String, String)>> {
     let (before, _) = message.split_once(", expected ")?;
     let (key, _) = before.split_once(" is ")?;
     let key = key.split_whitespace().last()?;
-    let value = super::value(&Scene::default(), key)?;
+    let values = super::Values::of(&Scene::default());
+    let value = values.get(key)?;
     let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
     Some(vec![(key.to_owned(), text)])
 }

@@ -12,6 +12,6 @@ pub use changes::{changes, difference};
 pub use history::{History, Step};
 pub use look_file::{is_look, load_look, save_look};
 pub use mends::{Mend, mends};
-pub use search::{Found, find, value, with_value};
+pub use search::{Found, Values, find, settings_of, with_value};
 pub use toml::Value;
 pub use units::quantity;

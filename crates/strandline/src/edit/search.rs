@@ -33,6 +33,15 @@ pub fn find(words: &str) -> Vec<Found> {
     first
 }
 
+/// The settings of a section and of the sections in it, in the order of a file. Items of lists are not among them.
+pub fn settings_of(section: &str) -> Vec<Found> {
+    let mut all = Vec::new();
+    if let Some(Kind::Group(table)) = Scene::TABLE.row(section).map(|row| row.kind) {
+        collect(table, section, &mut all);
+    }
+    all
+}
+
 fn collect(table: &Table, section: &str, all: &mut Vec<Found>) {
     for row in table.rows {
         let key = if section.is_empty() { row.name.to_owned() } else { format!("{section}.{}", row.name) };
@@ -44,21 +53,26 @@ fn collect(table: &Table, section: &str, all: &mut Vec<Found>) {
     }
 }
 
-/// The value of a setting, as a file has it; `None` where the scene has none.
-pub fn value(scene: &Scene, key: &str) -> Option<Value> {
-    let table = toml::Table::try_from(scene).ok()?;
-    let mut value = Value::Table(table);
-    for name in key.split('.') {
-        value = value.as_table_mut()?.remove(name)?;
+/// The values of a scene's settings, as a file has them.
+pub struct Values(Value);
+
+impl Values {
+    /// Those of a scene.
+    pub fn of(scene: &Scene) -> Self {
+        Self(Value::Table(toml::Table::try_from(scene).unwrap_or_default()))
     }
-    Some(value)
+
+    /// The value of a setting; `None` where the scene has none.
+    pub fn get(&self, key: &str) -> Option<&Value> {
+        key.split('.').try_fold(&self.0, |value, name| value.as_table()?.get(name))
+    }
 }
 
-/// The scene with another value of a setting.
+/// The scene with another value of a setting; `None` leaves the setting out, which then has its default.
 ///
 /// # Errors
 /// A key that no setting has; a value of another kind or outside its range.
-pub fn with_value(scene: &Scene, key: &str, value: Value) -> Result<Scene, Error> {
+pub fn with_value(scene: &Scene, key: &str, value: impl Into<Option<Value>>) -> Result<Scene, Error> {
     let mut table = toml::Table::try_from(scene).unwrap_or_default();
     let (sections, name) = key.rsplit_once('.').unwrap_or(("", key));
     let mut at = &mut table;
@@ -70,10 +84,16 @@ pub fn with_value(scene: &Scene, key: &str, value: Value) -> Result<Scene, Error
         };
         at = inner;
     }
-    at.insert(name.to_owned(), value);
+    match value.into() {
+        Some(value) => at.insert(name.to_owned(), value),
+        None => at.remove(name),
+    };
     let mut changed = Scene::parse(&toml::to_string(&table).unwrap_or_default(), key)?;
     (changed.folder, changed.given) = (scene.folder.clone(), scene.given);
-    changed.look.surroundings.clone_from(&scene.look.surroundings);
+    // Those of a file that is named no longer go with it.
+    if scene.surroundings.file.is_none() || changed.surroundings.file.is_some() {
+        changed.look.surroundings.clone_from(&scene.look.surroundings);
+    }
     Ok(changed)
 }
 
@@ -92,16 +112,25 @@ mod tests {
     }
 
     #[test]
+    fn sections_have_their_settings_and_those_of_sections_within() {
+        let keys: Vec<String> = settings_of("groom").into_iter().map(|found| found.key).collect();
+        assert!(keys[0] == "groom.file" && keys.iter().all(|key| key.starts_with("groom.")), "{keys:?}");
+        assert!(settings_of("simulation").iter().any(|found| found.key == "simulation.drag.across"));
+        assert!(settings_of("no_such").is_empty() && settings_of("lights").is_empty());
+    }
+
+    #[test]
     fn a_value_is_read_and_set_by_its_key_and_nothing_else_changes() {
         let scene = Scene::demo();
-        let before = value(&scene, "look.width_scale").unwrap();
+        let before = Values::of(&scene).get("look.width_scale").unwrap().clone();
         let changed = with_value(&scene, "look.width_scale", Value::Float(1.25)).unwrap();
         assert_eq!(changed.look.width_scale, 1.25);
         assert!(with_value(&changed, "look.width_scale", before).unwrap() == scene);
         // One that has no value yet.
-        assert_eq!(value(&scene, "camera.field_of_view"), None);
+        assert_eq!(Values::of(&scene).get("camera.field_of_view"), None);
         let wide = with_value(&scene, "camera.field_of_view", Value::Float(60.0)).unwrap();
         assert_eq!(wide.camera.field_of_view, Some(60.0));
+        assert!(with_value(&wide, "camera.field_of_view", None).unwrap() == scene);
         let refused =
             |key: &str, number| with_value(&scene, key, Value::Float(number)).unwrap_err().to_string();
         assert!(refused("look.width_scale", -1.0).contains("width_scale"));

@@ -176,7 +176,7 @@ impl DrawingThread {
             Ok(mut loaded) => {
                 let Loaded { session, notes, timeline, .. } = &mut *loaded;
                 timeline.range = Range { due: self.clock.now(), ..playing.range };
-                let (camera, bounds) = (*session.view().camera(), session.view().bounds());
+                let (camera, bounds) = (*session.camera_at_rest(), session.view().bounds());
                 let scene = Box::new(session.scene().clone());
                 self.emit(LiveEvent::Loaded(load, scene, camera, bounds, notes.clone()));
                 if let (Some(old), Some(_)) = (&playing.scene, &playing.recorder) {
@@ -354,7 +354,7 @@ impl DrawingThread {
             recorded: playing.recorder.as_ref().map(|recorder| recorder.frames),
             camera: Some(*session.view().camera()),
             follows_camera: session.follows_camera(),
-            timeline: loaded.timeline.shown(loaded.rate()),
+            timeline: loaded.timeline.shown(loaded.rate(), session.motion_offset()),
             overlaid: overlaid.map(Arc::new),
             drawing,
             step: playing.step.take(),

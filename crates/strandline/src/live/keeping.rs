@@ -118,6 +118,7 @@ impl Loaded {
                 self.timeline.playhead = 0;
             }
             Change::Camera(_)
+            | Change::CameraKeys(_)
             | Change::Look(_)
             | Change::BodyLook(_)
             | Change::Lights(_)
@@ -126,6 +127,12 @@ impl Loaded {
             | Change::Drag(_)
             | Change::Release => {}
         }
-        self.session.change(change)
+        let are_keys = matches!(change, Change::CameraKeys(_));
+        self.session.change(change)?;
+        // The view is that of the shown frame, not of the one that is simulated.
+        if are_keys && self.timeline.at != self.timeline.playhead {
+            self.show(self.timeline.playhead)?;
+        }
+        Ok(())
     }
 }

@@ -37,6 +37,31 @@ pub(super) fn curve(keys: &[CameraKeyframe]) -> Result<Option<Curve<6>>, Error> 
     Ok(Some(Curve::new(keys.iter().map(key).collect())?))
 }
 
+impl CameraKeyframe {
+    /// The keyframe at a time \[s\] by which a camera that the scene has at `base` looks as `seen` does. Its turn is the one
+    /// nearest to `turn` \[degrees\], that of a keyframe before it; the field of view stays that of `base`.
+    pub fn of_view(seen: &Camera, base: &Camera, time: f64, turn: f32) -> Self {
+        let [(yaw, rise, distance), (base_yaw, base_rise, base_distance)] = [seen, base].map(place);
+        let turned = yaw - base_yaw;
+        Self {
+            time,
+            turn: turned + 360.0 * ((turn - turned) / 360.0).round(),
+            rise: rise - base_rise,
+            distance: (distance / base_distance.max(1e-6)).clamp(0.01, 1000.0),
+            translation: seen.target - base.target,
+            ..Self::default()
+        }
+    }
+}
+
+/// Yaw and height above its target \[degrees\], and distance from it \[m\], of a camera.
+fn place(camera: &Camera) -> (f32, f32, f32) {
+    let offset = camera.position - camera.target;
+    let level = Vec3::new(offset.x, 0.0, offset.z).length();
+    let yaw = math::atan2(offset.x, offset.z).to_degrees();
+    (yaw, math::atan2(offset.y, level).to_degrees(), offset.length())
+}
+
 impl CameraMotion {
     /// The motion of a camera through keyframes, about its place without them; none without keyframes.
     ///
@@ -52,8 +77,7 @@ impl CameraMotion {
         let [turn, rise, distance] = [turn % 360.0, rise, distance].map(|value| value as f32);
         let moved = glam::DVec3::new(x, y, z).as_vec3();
         let offset = self.base.position - self.base.target;
-        let level = Vec3::new(offset.x, 0.0, offset.z).length();
-        let own = math::atan2(offset.y, level).to_degrees();
+        let (_, own, _) = place(&self.base);
         // A scene may have it steeper.
         let steep = (own + rise).clamp((-STEEPEST).min(own), STEEPEST.max(own));
         // The axis about which a camera before the face rises.
@@ -113,6 +137,22 @@ mod tests {
         let camera = motion(&[key]).at(0.0);
         let height = camera.position.y - 1.5;
         assert!(height > 1.99 && camera.position.z > 0.01, "not over the pole: {}", camera.position);
+    }
+
+    #[test]
+    fn a_keyframe_of_a_view_shows_it() {
+        let base = motion(&[CameraKeyframe::default()]).at(0.0);
+        for (x, y, z) in [(1.0, 2.0, -0.5), (-2.0, 1.0, 0.1), (0.3, 3.0, 2.5)] {
+            let target = Vec3::new(0.1, 1.4, -0.2);
+            let seen = Camera { position: Vec3::new(x, y, z), target, ..base };
+            for turn in [0.0, 350.0, -720.0] {
+                let key = CameraKeyframe::of_view(&seen, &base, 2.0, turn);
+                assert!((key.turn - turn).abs() <= 180.0 && key.time == 2.0, "{key:?}");
+                let shown = motion(&[key]).at(0.0);
+                assert!(shown.position.distance(seen.position) < 1e-4, "{shown:?}");
+                assert!(shown.target.distance(seen.target) < 1e-6);
+            }
+        }
     }
 
     #[test]

@@ -54,6 +54,20 @@ settings! {
 }
 
 settings! {
+    /// A view that was kept.
+    pub struct KeptView {
+        /// Its name.
+        name: String = String::new();
+        /// Position, world space.
+        position: Vec3 = Vec3::Z, in [-1e4, 1e4] "m";
+        /// Target, world space.
+        target: Vec3 = Vec3::ZERO, in [-1e4, 1e4] "m";
+        /// Vertical field of view.
+        field_of_view: f32 = 30.0, in [1.0, 170.0] "degrees", more "a wider view";
+    }
+}
+
+settings! {
     /// View of the pictures.
     pub struct CameraSection {
         /// From where it looks when its position is not given; hair and body fill the picture.
@@ -66,6 +80,8 @@ settings! {
         field_of_view: Option<f32> = None, in [1.0, 170.0] "degrees", more "a wider view";
         /// Views of a film, in the order of their times; a window follows them until its view is moved.
         keyframes: Vec<CameraKeyframe> = Vec::new(), in [0, 100_000];
+        /// Views that a window lists; no picture of `render` looks from them.
+        kept: Vec<KeptView> = Vec::new(), in [0, 1000];
     }
     also CameraSection::apart;
 }

@@ -28,7 +28,7 @@ pub use body::{
 };
 pub use colors::hex_color;
 pub use devices::Devices;
-pub use film::{CameraKeyframe, CameraSection, FilmSection, View};
+pub use film::{CameraKeyframe, CameraSection, FilmSection, KeptView, View};
 pub(crate) use given::Given;
 pub use groom::{GroomPart, GroomSection, TieSection};
 pub use head::HeadMotion;

@@ -38,6 +38,7 @@ impl Session<Inline> {
                 settings.strands.method == method || engine.has_state()?
             }
             Change::Camera(_)
+            | Change::CameraKeys(_)
             | Change::Look(_)
             | Change::BodyLook(_)
             | Change::Lights(_)

@@ -1,7 +1,7 @@
 use crate::{
     Ray,
     render::{BodyLook, Camera, LevelOfDetail, Light, Look, PictureSettings},
-    scene::{MotionSection, WindSection},
+    scene::{CameraKeyframe, MotionSection, WindSection},
     sim::Settings,
 };
 
@@ -13,6 +13,8 @@ pub enum Change {
     Reset,
     /// Another view.
     Camera(Camera),
+    /// Other keyframes of the camera, about where the scene has it; the view follows them.
+    CameraKeys(Vec<CameraKeyframe>),
     /// Another look of the hair.
     Look(Box<Look>),
     /// Another look of the body.
@@ -29,8 +31,8 @@ pub enum Change {
     Length(f32),
     /// Another wind.
     Wind(WindSection),
-    /// Another motion of the head, from its beginning, or a further turn added to it; the
-    /// pivot stays.
+    /// A motion of the head of another name, from its beginning; or other keyframes of it, or a further turn added to it,
+    /// at its present time. The pivot stays.
     Motion(Box<MotionSection>),
     /// Takes the first hair on a line of sight, and all hair within a distance \[m\] of it, into a hand.
     Grab(Ray, f32),
@@ -45,6 +47,7 @@ impl Change {
     pub(crate) fn is_of_picture(&self) -> bool {
         match self {
             Self::Camera(_)
+            | Self::CameraKeys(_)
             | Self::Look(_)
             | Self::BodyLook(_)
             | Self::Lights(_)

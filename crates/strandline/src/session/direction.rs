@@ -93,7 +93,12 @@ impl Direction {
         (time + self.offset).max(self.begun)
     }
 
-    /// Another motion of the head begins at its beginning; another turn does not disturb it.
+    /// Time of the motion \[s\] at the time 0 of the clock, unless that is before its beginning.
+    pub fn offset(&self) -> f64 {
+        if self.begins { -self.time } else { self.offset }
+    }
+
+    /// A motion of another name begins at its beginning; other keyframes and another turn do not disturb its time.
     ///
     /// # Errors
     /// A setting outside its range.
@@ -104,7 +109,7 @@ impl Direction {
         let (solids, neck) = (self.head.solids().clone(), self.head.neck());
         self.head = head.with_body(body).with_recorded(recorded).with_solids(solids).with_neck(neck);
         self.head_from_origin = self.head.seen_from(self.head_from_origin.origin());
-        if (motion.name, &motion.keyframes) != (self.motion.name, &self.motion.keyframes) {
+        if motion.name != self.motion.name {
             (self.begun, self.begins) = (0.0, true);
         }
         (self.motion, self.weather) = (motion, None);

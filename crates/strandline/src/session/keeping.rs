@@ -72,6 +72,11 @@ impl<E: Executor> Session<E> {
         self.direction.time_shown(0.0)
     }
 
+    /// Time of motion, wind and camera \[s\] at the time 0 of the clock.
+    pub fn motion_offset(&self) -> f64 {
+        self.direction.offset()
+    }
+
     /// Shows a moment that was kept, of a time of the motion \[s\]; the simulation stays where it is.
     pub fn show_held(&mut self, positions: &[Vec3Lanes], body: &BodyFrame, origin: Vec3, time: f64) {
         self.shown.hold(positions, body, origin);

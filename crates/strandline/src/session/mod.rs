@@ -72,7 +72,8 @@ pub(crate) struct Session<E> {
     /// Size and finish of full pictures, and the simpler pictures that are drawn in their place.
     settings: PictureSettings,
     draft: Option<Draft>,
-    /// The keyframes of the camera, and whether the view follows them.
+    /// The camera as the scene has it, its keyframes, and whether the view follows them.
+    camera_at_rest: Camera,
     camera_motion: Option<CameraMotion>,
     follows_camera: bool,
     /// Device on which the hair of the last result was simulated: cpu, or the adapter.
@@ -259,6 +260,7 @@ impl<E: Executor> Session<E> {
                 camera.validate().map(|()| view.camera = camera)?;
                 self.follows_camera = false;
             }
+            Change::CameraKeys(keys) => self.set_camera_keys(&keys)?,
             Change::Look(look) => look.validate().map(|()| view.look = *look)?,
             Change::BodyLook(look) => look.validate().map(|()| view.body_look = look)?,
             Change::Lights(lights) => {

@@ -78,6 +78,7 @@ impl Session<Inline> {
             direction: Direction::default(),
             settings: PictureSettings::default(),
             draft: None,
+            camera_at_rest: Camera::front(),
             camera_motion: None,
             follows_camera: false,
             simulated_on,
@@ -142,6 +143,7 @@ impl Session<Inline> {
             None => {}
         }
         session.direction = Direction::new(&scene, head);
+        session.camera_at_rest = camera;
         session.camera_motion = CameraMotion::new(&scene.camera.keyframes, camera)?;
         (session.scene, session.tags) = (scene, tags);
         session.show()?;
@@ -163,6 +165,7 @@ impl Session<Inline> {
             direction: self.direction,
             settings: self.settings,
             draft: self.draft,
+            camera_at_rest: self.camera_at_rest,
             camera_motion: self.camera_motion,
             follows_camera: self.follows_camera,
             simulated_on: self.simulated_on,

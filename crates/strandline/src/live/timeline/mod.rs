@@ -98,8 +98,10 @@ pub struct TimelineShown {
     pub marks: [Option<u32>; 2],
     /// See [`TimelineShown::marks`].
     pub film_end: u32,
-    /// Frames of a second.
+    /// Frames of a second, and the time of motion and camera at frame 0 \[s\].
     pub rate: f64,
+    /// See [`TimelineShown::rate`].
+    pub offset: f64,
     /// Bytes of the frames in memory and on disk, and the most of each.
     pub used: [u64; 2],
     /// See [`TimelineShown::used`].
@@ -218,7 +220,7 @@ impl Timeline {
     }
 
     /// The part of it that a person sees.
-    pub fn shown(&self, rate: f64) -> TimelineShown {
+    pub fn shown(&self, rate: f64, offset: f64) -> TimelineShown {
         TimelineShown {
             playhead: self.playhead,
             first: self.kept,
@@ -227,6 +229,7 @@ impl Timeline {
             marks: self.range.marks,
             film_end: self.film_end,
             rate,
+            offset,
             used: self.used,
             most: self.most,
         }

@@ -87,7 +87,7 @@ fn frames_beyond_the_memory_lie_on_the_disk_and_those_beyond_both_are_forgotten(
         .map(super::Frame::bytes)
         .fold([0; 2], |sum, [memory, disk]| [sum[0] + memory, sum[1] + disk]);
     assert_eq!(timeline.used, counted, "what is counted is what is there");
-    let shown = timeline.shown(30.0);
+    let shown = timeline.shown(30.0, 0.0);
     // Some 25 frames in memory beside the bookmark, and ten on the disk.
     assert!(
         shown.first > 20 && shown.first < 30 && shown.last == 60 && timeline.used[1] > 3_000_000,

@@ -116,6 +116,7 @@ fn item(list: &str) -> toml::Table {
         "wind.sources" => toml::Table::try_from(strandline::scene::WindSource::default()),
         "ties" => toml::Table::try_from(strandline::scene::TieSection::default()),
         "strokes" => toml::Table::try_from(strandline::settings::Stroke::default()),
+        "camera.kept" => toml::Table::try_from(strandline::scene::KeptView::default()),
         "camera.keyframes" => toml::Table::try_from(strandline::scene::CameraKeyframe::default()),
         "colliders" => {
             let sphere = ColliderSection::Sphere(SphereSection { center: Vec3::ZERO, ..Default::default() });
