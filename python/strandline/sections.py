@@ -1264,6 +1264,22 @@ class CameraKeyframes(TypedDict, total=False):
     """A jump: the view before is held until this one. Allowed: true or false."""
 
 
+class CameraKept(TypedDict, total=False):
+    """A view that was kept."""
+
+    name: str
+    """Its name. Allowed: a name."""
+
+    position: Sequence[float]
+    """Position, world space. Allowed: 3 numbers of -10,000 to 10,000 m."""
+
+    target: Sequence[float]
+    """Target, world space. Allowed: 3 numbers of -10,000 to 10,000 m."""
+
+    field_of_view: float
+    """Vertical field of view. Allowed: 1 to 170 degrees."""
+
+
 class Camera(TypedDict, total=False):
     """View of the pictures."""
 
@@ -1283,6 +1299,9 @@ class Camera(TypedDict, total=False):
     keyframes: Sequence[CameraKeyframes]
     """Views of a film, in the order of their times; a window follows them until its view is moved. Allowed: 0 to
     100,000."""
+
+    kept: Sequence[CameraKept]
+    """Views that a window lists; no picture of `render` looks from them. Allowed: 0 to 1000."""
 
 
 class Lights(TypedDict, total=False):
