@@ -1,10 +1,17 @@
-//! The page of grown styles, docs/styles.md, and its pictures. `cargo run --release -p strandline --example styles`
+//! The page of grown styles, docs/styles.md, its pictures, and the small pictures of styles and looks in the window.
+//! `cargo run --release -p strandline --example styles`
 
 use std::fmt::Write;
 use std::path::Path;
 
-use strandline::{Backend, Camera, Hair, Prepared, Scene, Style, settings::Kind};
+use image::{RgbImage, imageops};
+use strandline::{
+    Backend, Camera, Hair, Picture, Prepared, Scene, Style, look::Preset, scene::View, settings::Kind,
+};
 
+const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../apps/viewer/assets");
+/// Side of a small picture \[pixel\].
+const SMALL: u32 = 64;
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/styles.md");
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -21,26 +28,56 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let folder = Path::new(if quick { "out/examples" } else { "docs/gallery" });
     std::fs::create_dir_all(folder)?;
+    let mut small = Vec::new();
     for style in Style::ALL {
-        let mut scene = Scene::demo();
-        scene.set_style(style);
-        let side = if quick { 48 } else { 300 };
-        (scene.picture.width, scene.picture.height) = (side, side);
-        if quick {
-            scene.style.strand_count = 40;
-        }
-        let mut hair = Hair::from_prepared(Prepared::new(&scene)?, Backend::Cpu)?;
+        let (mut hair, camera) = grown(style, quick)?;
         let look = hair.look().clone();
-        let camera = if style.name() == "bun" || style.name() == "braid" {
-            Camera::side()
-        } else {
-            Camera::three_quarter()
-        };
         let picture = hair.picture(&camera, &look)?;
         assert!(!picture.is_blank(), "{}", style.name());
         picture.save(folder.join(format!("style_{}.png", style.name())))?;
+        small.push(picture);
     }
+    let assets = if quick { folder } else { Path::new(ASSETS) };
+    row(&small).save(assets.join("styles.jpg"))?;
+    let (mut hair, camera) = grown(Style::Bob, quick)?;
+    let mut looks = Vec::new();
+    for preset in Preset::ALL {
+        let mut look = hair.look().clone();
+        look.dress(preset);
+        looks.push(hair.picture(&camera, &look)?);
+    }
+    row(&looks).save(assets.join("looks.jpg"))?;
     Ok(())
+}
+
+/// A style on the built-in head, and the camera that sees the most of it.
+fn grown(style: Style, quick: bool) -> Result<(Hair, Camera), strandline::Error> {
+    let mut scene = Scene::demo();
+    scene.set_style(style);
+    let side = if quick { 48 } else { 300 };
+    (scene.picture.width, scene.picture.height) = (side, side);
+    if quick {
+        scene.style.strand_count = 40;
+    }
+    if matches!(style.name(), "bun" | "braid") {
+        scene.camera.view = View::Side;
+    }
+    let prepared = Prepared::new(&scene)?;
+    let camera = prepared.camera(1.0);
+    Ok((Hair::from_prepared(prepared, Backend::Cpu)?, camera))
+}
+
+/// Pictures side by side, small.
+fn row(pictures: &[Picture]) -> RgbImage {
+    let mut row = RgbImage::new(SMALL * pictures.len() as u32, SMALL);
+    for (x, picture) in (0..).step_by(SMALL as usize).zip(pictures) {
+        let Some(whole) = RgbImage::from_raw(picture.width, picture.height, picture.pixels.clone()) else {
+            continue;
+        };
+        let small = imageops::resize(&whole, SMALL, SMALL, imageops::FilterType::Lanczos3);
+        imageops::replace(&mut row, &small, x, 0);
+    }
+    row
 }
 
 /// The settings of a style in a scene file, key after key.

@@ -43,7 +43,7 @@ fn slid(on: &On, rounds: u32, friction: f32) -> f32 {
 }
 
 law! {
-    fn friction_does_not_depend_on_the_number_of_rounds(on) {
+    long fn friction_does_not_depend_on_the_number_of_rounds(on) {
         assert!((slid(on, 20, 0.0) - 1.0).abs() < 1e-3, "{}", slid(on, 20, 0.0));
         let lost = [10, 20, 80].map(|rounds| 1.0 - slid(on, rounds, 0.3));
         // 0.3 g for 0.1 s by the share of its weight that rests on the log: the sum of the cosines over the 17

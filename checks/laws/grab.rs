@@ -98,7 +98,7 @@ law! {
 }
 
 law! {
-    fn a_hand_does_not_pull_hair_into_a_solid(on) {
+    long fn a_hand_does_not_pull_hair_into_a_solid(on) {
         let rope = one_strand(&line(Vec3::Y * 0.1, Vec3::new(0.3, 0.1, 0.0), 15));
         let ball = Collider {
             shape: Shape::Sphere { center: Vec3::ZERO, radius: 0.1 },

@@ -137,7 +137,7 @@ fn carried_along(on: &On, carrier: Carrier, friction: f32) -> f32 {
 }
 
 law! {
-    fn a_piece_takes_along_what_rubs_on_it(on) {
+    long fn a_piece_takes_along_what_rubs_on_it(on) {
         let along = carried_along(on, Carrier::Piece(2), 0.8);
         assert!((along - 0.2).abs() < 0.02, "{along} m/s");
         for (carrier, friction) in [(Carrier::Piece(2), 0.0), (Carrier::Piece(1), 0.8), (Carrier::World, 0.8)] {

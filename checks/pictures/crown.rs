@@ -166,7 +166,7 @@ fn shown(on: &On, preset: Preset) -> [f32; 2] {
 }
 
 law! {
-    fn brown_hair_glows_from_behind_and_has_a_ring_in_a_soft_box(on) {
+    long fn brown_hair_glows_from_behind_and_has_a_ring_in_a_soft_box(on) {
         let [glow, ring] = shown(on, Preset::Brown);
         // 0.5 is asked for; 1.8 is left where light does not go through fibres.
         assert!(glow >= 3.0, "{glow}");

@@ -32,6 +32,7 @@ mod setting_row;
 mod sight;
 mod stages;
 mod status_bar;
+mod thumbnails;
 mod timeline_bar;
 mod typed;
 mod undoing;

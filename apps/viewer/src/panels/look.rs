@@ -1,6 +1,6 @@
 //! Controls of the look.
 
-use eframe::egui::Ui;
+use eframe::egui::{self, Ui};
 use strandline::{
     Look,
     look::{
@@ -12,8 +12,8 @@ use strandline::{
 
 use crate::{
     App,
-    controls::{button, choose, colour, slide},
-    looks,
+    controls::{choose, colour, slide},
+    looks, thumbnails,
 };
 
 pub fn show(app: &mut App, ui: &mut Ui) {
@@ -38,7 +38,9 @@ pub fn show(app: &mut App, ui: &mut Ui) {
 fn colours(look: &mut Look, base: &Look, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
         for preset in Preset::ALL {
-            if button(ui, preset.name(), "colours of the hair, and how light meets it\ndefault brown") {
+            let button = egui::Button::image_and_text(thumbnails::look(preset, ui), preset.name());
+            let tip = "colours of the hair, and how light meets it\ndefault brown";
+            if ui.add(button).on_hover_text(tip).clicked() {
                 look.dress(preset);
             }
         }

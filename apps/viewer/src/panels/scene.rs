@@ -7,7 +7,7 @@ use crate::{
     App,
     controls::{button, tick_of},
     files::Wanted,
-    path_field,
+    path_field, thumbnails,
 };
 
 pub fn show(app: &mut App, ui: &mut Ui) {
@@ -18,7 +18,10 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     let mut picked = false;
     let menu = menu.show_ui(ui, |ui| {
         for style in Style::ALL {
-            picked |= ui.selectable_value(&mut chosen, style, style.name()).clicked();
+            ui.horizontal(|ui| {
+                ui.add(thumbnails::style(style, ui));
+                picked |= ui.selectable_value(&mut chosen, style, style.name()).clicked();
+            });
         }
     });
     menu.response.on_hover_text(format!("grown on the head\ndefault {}", app.base.style.style.name()));
