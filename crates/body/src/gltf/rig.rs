@@ -256,9 +256,9 @@ impl Rig {
         self.names.iter().flatten().map(String::as_str)
     }
 
-    /// Transform of a node into the world at a time of the clip \[s\].
-    pub fn world_from_node(&self, node: usize, time: f64) -> DMat4 {
-        self.pose(Some(time), &self.teleports).world_from_node[node]
+    /// Transform of a node into the world at a time of the clip \[s\]. Nothing is interpolated over marks.
+    pub fn world_from_node(&self, node: usize, time: f64, teleports: &Teleports) -> DMat4 {
+        self.pose(Some(time), teleports).world_from_node[node]
     }
 
     fn pose(&self, time: Option<f64>, teleports: &Teleports) -> Pose {
