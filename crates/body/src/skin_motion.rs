@@ -44,6 +44,8 @@ struct Moving {
 }
 
 impl Moving {
+    /// The vertices of a mesh from the one of number `first` on, as a motion has them.
+    ///
     /// # Errors
     /// Fewer vertices in the mesh, of `count`, than the motion has.
     fn new(
