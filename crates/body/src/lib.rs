@@ -25,6 +25,7 @@ mod kept_grid;
 mod keyframes;
 mod lattice;
 mod layers;
+mod local_shifts;
 mod mannequin;
 mod materials;
 mod mesh;
