@@ -228,13 +228,17 @@ pub fn mesh(
     mesh.map_err(|error| errors::refused(vertices.py(), &Error::from(error)))
 }
 
-/// The motion of a mesh of its vertices over time, shape (frame, vertex, 3).
-pub fn motion(frames: &PyReadonlyArrayDyn<'_, f32>, frames_per_second: f64) -> PyResult<VertexMotion> {
+/// The motion of a mesh of its vertices over time, shape (frame, vertex, 3), with times of marks \[s\].
+pub fn motion(
+    frames: &PyReadonlyArrayDyn<'_, f32>,
+    frames_per_second: f64,
+    teleports: &[f64],
+) -> PyResult<VertexMotion> {
     let numbers = arrays::numbers(frames, "motion", &[None, None, Some(3)])?;
     let (count, vertices) = (frames.shape()[0], frames.shape()[1]);
     let points: Vec<Vec3> = numbers.as_chunks::<3>().0.iter().map(|point| Vec3::from_array(*point)).collect();
     let frames_of = points.chunks(vertices.max(1)).map(<[Vec3]>::to_vec).collect();
     let times = (0..count).map(|frame| frame as f64 / frames_per_second).collect();
-    let motion = VertexMotion::sampled(times, frames_of);
+    let motion = VertexMotion::sampled(times, frames_of).and_then(|motion| motion.with_teleports(teleports));
     motion.map_err(|error| errors::refused(frames.py(), &Error::from(error)))
 }

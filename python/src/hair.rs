@@ -50,7 +50,7 @@ impl Hair {
         folder: PathBuf,
         groom: Vec<(String, Bound<'_, PyDict>)>,
         mesh: Vec<(String, PyReadonlyArrayDyn<'_, f32>, PyReadonlyArrayDyn<'_, u32>)>,
-        motion: Vec<(String, PyReadonlyArrayDyn<'_, f32>, f64)>,
+        motion: Vec<(String, PyReadonlyArrayDyn<'_, f32>, f64, Vec<f64>)>,
     ) -> PyResult<Self> {
         let scene = scenes::parsed(py, scene, &folder)?;
         let mut sources = Sources::default();
@@ -60,8 +60,8 @@ impl Hair {
         for (name, vertices, triangles) in &mesh {
             sources = sources.with_mesh(name, grooms::mesh(vertices, triangles)?);
         }
-        for (name, frames, frames_per_second) in &motion {
-            sources = sources.with_motion(name, grooms::motion(frames, *frames_per_second)?);
+        for (name, frames, frames_per_second, teleports) in &motion {
+            sources = sources.with_motion(name, grooms::motion(frames, *frames_per_second, teleports)?);
         }
         let playing = errors::run(py, || {
             let mut prepared = Prepared::from_sources(&scene, &sources)?;

@@ -123,7 +123,7 @@ class Files:
         own = body(path, scale)
         if own.motion is not None:
             copy = self.place(path, ".npz")
-            np.savez(copy, vertices=own.motion, faces=own.faces, fps=own.frames_per_second)
+            np.savez(copy, vertices=own.motion, faces=own.faces, fps=own.frames_per_second, teleports=own.teleports)
             return copy
         copy = self.place(path, ".obj")
         write_obj(own, copy)

@@ -16,7 +16,8 @@ class Body:
     """A triangle mesh, head space [m], y up: ``Body(vertices, faces)``, of shapes (n, 3).
 
     ``motion`` holds its vertices over time, shape (frame, n, 3), at ``frames_per_second``: then the body moves with
-    every frame of a simulation. Plain data: it can be pickled.
+    every frame of a simulation. ``teleports`` are times [s] of the motion at which the body is elsewhere at once: hair is
+    carried there instead of being pulled, and nothing is interpolated over them. Plain data: it can be pickled.
     """
 
     vertices: NDArray[np.float32]
@@ -30,6 +31,7 @@ class Body:
         *,
         motion: ArrayLike | None = None,
         frames_per_second: float = 24.0,
+        teleports: ArrayLike = (),
         notes: Sequence[str] = (),
     ) -> None:
         self.vertices = _arrays.numbers(vertices, "vertices", "(n, 3)")
@@ -47,6 +49,12 @@ class Body:
                 raise Error(f"motion has the shape {moving.shape}, expected (frame, {len(self.vertices)}, 3)", "value")
             self.motion = moving
         self.frames_per_second = _arrays.number(frames_per_second, "frames_per_second", "a number above 0", 1e-9, 1e9)
+        marks = _arrays.numbers(teleports, "teleports", "(n,)", np.float64)
+        if marks.ndim != 1 or not np.isfinite(marks).all():
+            raise Error("teleports is no list of finite times, expected times of the motion [s]", "value")
+        if len(marks) and self.motion is None:
+            raise Error("teleports are marks of a body without a motion, expected `motion` too", "value")
+        self.teleports: list[float] = sorted(set(marks.tolist()))
         self.notes = list(notes)
 
     @classmethod
@@ -75,6 +83,9 @@ class Body:
         low = min(int(place), len(self.motion) - 1)
         high = min(low + 1, len(self.motion) - 1)
         share = np.float32(place - low)
+        marks = [mark for mark in self.teleports if low < mark * self.frames_per_second <= high]
+        if marks:
+            share = np.float32(time >= marks[0])
         if share == 0 or low == high:
             return np.asarray(self.motion[low])
         return np.asarray(self.motion[low] * (1 - share) + self.motion[high] * share)

@@ -244,7 +244,16 @@ class Style(TypedDict, total=False):
 
 
 class BodyTeleports(TypedDict, total=False):
-    """A mark of the body's motion: there it is elsewhere at once, and hair is carried with it instead of being
+    """A mark of a motion: there the body is elsewhere at once, and hair is carried with it instead of being
+    pulled."""
+
+    time: float
+    """Time of the motion. Between its samples on both sides of a mark nothing is interpolated. Allowed: -1,000,000 to
+    1,000,000 s."""
+
+
+class BodyPartsTeleports(TypedDict, total=False):
+    """A mark of a motion: there the body is elsewhere at once, and hair is carried with it instead of being
     pulled."""
 
     time: float
@@ -280,6 +289,24 @@ class BodyParts(TypedDict, total=False):
     covers: bool
     """Presses hair that starts under it beneath it; without this a part does that covers as many roots as a hat.
     Allowed: true or false."""
+
+    clip: str
+    """Clip of the part's glTF file that moves it, by its name, in the space that it shares with the body's file:
+    clothes with a skin of their own. Without one the part rides the head. Allowed: a name."""
+
+    start: float
+    """Time of the part's clip at the time 0 of the scene; the clip is held before its beginning and after its end.
+    Allowed: -1,000,000 to 1,000,000 s."""
+
+    speed: float
+    """Seconds of the part's clip in a second of the scene. Allowed: -1000 to 1000."""
+
+    loop: bool
+    """Begins the part's clip again after its end. Allowed: true or false."""
+
+    teleports: Sequence[BodyPartsTeleports]
+    """Marks at which the part is elsewhere at once, beside `extras.teleports` of its clip, times of the clip: hair is
+    carried with the head over them. Allowed: 0 to 100,000."""
 
 
 class Body(TypedDict, total=False):
@@ -371,6 +398,15 @@ class Body(TypedDict, total=False):
     would take a point: neither the number of rounds nor the pull of the strand changes it. Allowed: 0 to 10."""
 
 
+class MotionTeleports(TypedDict, total=False):
+    """A mark of a motion: there the body is elsewhere at once, and hair is carried with it instead of being
+    pulled."""
+
+    time: float
+    """Time of the motion. Between its samples on both sides of a mark nothing is interpolated. Allowed: -1,000,000 to
+    1,000,000 s."""
+
+
 class MotionKeyframes(TypedDict, total=False):
     """A pose at a time, as a person writes it."""
 
@@ -425,6 +461,10 @@ class Motion(TypedDict, total=False):
 
     scale: float
     """Metres per unit of that file. Allowed: 1e-6 to 1,000,000 m."""
+
+    teleports: Sequence[MotionTeleports]
+    """Marks at which the joint is elsewhere at once, beside `extras.teleports` of a glTF's clip, times of the file's
+    motion. Allowed: 0 to 100,000."""
 
     keyframes: Sequence[MotionKeyframes]
     """Poses, in the order of their times; used by "keyframes"."""

@@ -116,7 +116,7 @@ class Simulation:
             changes.update({"body.file": "body", "body.scale": 1.0, "body.up": "y"})
             meshes.append(("body", np.ascontiguousarray(body.vertices), np.ascontiguousarray(body.faces)))
             if body.motion is not None:
-                motions.append(("body", np.ascontiguousarray(body.motion), body.frames_per_second))
+                motions.append(("body", np.ascontiguousarray(body.motion), body.frames_per_second, body.teleports))
         if motion is not None:
             changes["motion"] = Motion(motion) if isinstance(motion, str) else motion
         changes.update({name: part for name, part in (("simulation", settings), ("look", look)) if part is not None})

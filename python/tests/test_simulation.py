@@ -116,6 +116,23 @@ def test_a_body_takes_new_vertices_every_step_or_as_a_whole(groom, ball):
     assert np.allclose(moving.at(0.5 / 30), 0.5 * (swell[0] + swell[1]))
 
 
+def test_marks_of_a_body_carry_its_hair_over_a_cut(groom, ball):
+    aside = np.stack([ball.vertices, ball.vertices, ball.vertices + (1, 0, 0), ball.vertices + (1, 0, 0)])
+    body = Body(ball.vertices, ball.faces, motion=aside, frames_per_second=30, teleports=[1.5 / 30])
+    assert np.array_equal(body.at(1.4 / 30), aside[1]) and np.array_equal(body.at(1.6 / 30), aside[2])
+    rest = None
+    with shake(groom, body=body, motion=None) as simulation:
+        for frame in simulation.frames(4):
+            rest = np.array(frame.points) if rest is None else rest
+            last = np.array(frame.points)
+        assert sum("as marked: hair is carried" in note for note in simulation.take_notes()) == 1
+    assert np.abs(last - np.asarray(rest) - (1, 0, 0)).max() < 0.01
+    with pytest.raises(Error, match="teleports is no list of finite times"):
+        Body(ball.vertices, ball.faces, motion=aside, teleports=[np.nan])
+    with pytest.raises(Error, match="marks of a body without a motion"):
+        Body(ball.vertices, ball.faces, teleports=[0.5])
+
+
 def test_hair_and_body_in_memory_stay_where_they_are(groom, ball):
     with shake(groom, body=ball, motion="still") as simulation:
         assert np.allclose(simulation.points[:, 0], groom.array[:, 0], atol=2e-3)

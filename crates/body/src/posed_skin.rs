@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::{Mat3, Vec3, Vec3A};
 
+use crate::local_shifts::LocalShifts;
 use crate::nearest_corner::{Feature, nearest_on};
 use crate::skin_solid::{NONE, SkinSolid};
 use crate::{BodyFrame, Carrier, Collider, Shape};
@@ -29,6 +30,8 @@ pub struct PosedSkin {
     /// Corners of the box of each node at the end.
     pub(crate) boxes: Vec<[Vec3A; 2]>,
     most_shift: f32,
+    /// Ways of triangles by their place; none where nothing moves.
+    shifts: Option<LocalShifts>,
 }
 
 /// The nearest place of a skin.
@@ -75,11 +78,15 @@ impl PosedSkin {
             return None;
         }
         let [start, end] = skins.map(|skin| solid.positions(skin.map(|skin| &skin[..])));
-        let shifts = start.iter().zip(&end).map(|(start, end)| start.distance_squared(*end));
-        let most_shift = shifts.fold(0.0, f32::max).sqrt();
+        let pairs = start.iter().zip(&end);
+        let squares: Vec<f32> = pairs.map(|(start, end)| start.distance_squared(*end)).collect();
+        let most_shift = squares.iter().copied().fold(0.0, f32::max).sqrt();
         let boxes = solid.boxes_about(&end);
         let made_of = skins.map(|skin| skin.cloned());
-        Some(Self { solid: Arc::clone(solid), made_of, start, end, boxes, most_shift })
+        let moves = most_shift > 0.0;
+        let shifts =
+            if moves { LocalShifts::new(boxes[0], solid.shifts_of_leaves(&boxes, &squares)) } else { None };
+        Some(Self { solid: Arc::clone(solid), made_of, start, end, boxes, most_shift, shifts })
     }
 
     /// The skin of a collider that the head carries, through a step between two frames of the body; `None` for other
@@ -108,6 +115,20 @@ impl PosedSkin {
     /// Most way \[m\] of a vertex through the step, head space.
     pub fn most_shift(&self) -> f32 {
         self.most_shift
+    }
+
+    /// The most \[m\] that the skin that ends within 6 cm of a point has moved through the step, head space.
+    pub fn shift_about(&self, point: Vec3) -> f32 {
+        self.shifts.as_ref().map_or(self.most_shift, |shifts| shifts.about(point))
+    }
+
+    /// Lower bound \[m\] of the distance at the end of a point \[m\], head space, that was at least `distance` \[m\] from the
+    /// skin at the start.
+    pub fn at_least_after(&self, point: Vec3, distance: f32) -> f32 {
+        let near = distance - self.shift_about(point);
+        // What ends within the reach of the ways about a point has moved no more than these.
+        let reach = self.shifts.as_ref().map_or(f32::INFINITY, LocalShifts::reach);
+        near.min(reach.max(distance - self.most_shift))
     }
 
     pub(crate) fn corners(&self, positions: &[Vec3], triangle: u32) -> [Vec3; 3] {

@@ -9,6 +9,7 @@ use strandline_base::math;
 use crate::bvh::{self, JointMotion};
 use crate::gltf::{self, Fault, Rig};
 use crate::parsing::{A_NAME, read_file, remedy};
+use crate::teleports::Teleports;
 use crate::{BodyError, Pose};
 
 /// Rigid motion of a joint, as a file has it.
@@ -17,6 +18,7 @@ pub struct RecordedMotion {
     source: Source,
     /// Metres of a unit of the file.
     scale: f64,
+    teleports: Teleports,
 }
 
 #[derive(Clone, Debug)]
@@ -38,7 +40,8 @@ impl RecordedMotion {
         let bytes = read_file(path)?;
         if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("bvh")) {
             let motion = bvh::parse(&bytes, joint).map_err(refused)?;
-            return Ok(Self { source: Source::Joint(Arc::new(motion)), scale });
+            let (source, teleports) = (Source::Joint(Arc::new(motion)), Teleports::default());
+            return Ok(Self { source, scale, teleports });
         }
         let names = gltf::clip_names(&bytes).map_err(refused)?;
         let clip = clip.or(names.first().map(String::as_str)).unwrap_or_default();
@@ -52,7 +55,18 @@ impl RecordedMotion {
             let found = format!("no node `{joint}` among {}", names.join(", "));
             return Err(refused((found, A_NAME)));
         };
-        Ok(Self { source: Source::Node(Arc::new(rig), node), scale })
+        let teleports = rig.teleports().clone();
+        Ok(Self { source: Source::Node(Arc::new(rig), node), scale, teleports })
+    }
+
+    /// Adds marks, times of the motion \[s\] at which the head is elsewhere at once: see
+    /// [`VertexMotion::with_teleports`](crate::VertexMotion::with_teleports).
+    ///
+    /// # Errors
+    /// Times that are not finite.
+    pub fn with_teleports(self, times: &[f64]) -> Result<Self, BodyError> {
+        let teleports = Teleports::new(&[self.teleports.times(), times].concat())?;
+        Ok(Self { teleports, ..self })
     }
 
     /// The head's pose (`world_from_head`) at a time \[s\]: it turns about the pivot \[m\], head space, and moves it, as the
@@ -72,23 +86,27 @@ impl RecordedMotion {
         pose
     }
 
-    /// Number of marks of the clip up to a time \[s\]; `None` of a motion without any.
+    /// Number of marks up to a time \[s\]; `None` of a motion without any.
     pub fn jumps_until(&self, time: f64) -> Option<i64> {
-        let Source::Node(rig, _) = &self.source else { return None };
-        let marks = rig.teleports();
+        let marks = &self.teleports;
         (!marks.times().is_empty()).then(|| marks.passed(time, 0.0))
     }
 
     /// Rotation and place of the joint in the world, units of the file.
     fn joint(&self, time: f64) -> (DQuat, DVec3) {
         match &self.source {
-            Source::Node(rig, node) => rigid(&rig.world_from_node(*node, time)),
+            Source::Node(rig, node) => rigid(&rig.world_from_node(*node, time, &self.teleports)),
             Source::Joint(motion) => {
                 let last = motion.poses.len() - 1;
                 let at = (time / motion.frame_time).clamp(0.0, last as f64);
                 // Times that are none are held at the first frame.
                 let before = if at.is_finite() { at as usize } else { 0 };
                 let share = if at.is_finite() { at - before as f64 } else { 0.0 };
+                let ends = [before, before + 1].map(|frame| frame as f64 * motion.frame_time);
+                let share = match self.teleports.is_after(ends, time).filter(|_| before < last) {
+                    Some(is_after) => f64::from(u8::from(is_after)),
+                    None => share,
+                };
                 let [(from, start), (to, end)] = [before, (before + 1).min(last)].map(|at| motion.poses[at]);
                 let rotation = math::slerp(from.as_quat(), to.as_quat(), share as f32);
                 (rotation.as_dquat().normalize(), start.lerp(end, share))
@@ -130,6 +148,22 @@ mod tests {
             let face = pose.direction(Vec3::Z);
             assert!((face.x.atan2(face.z).to_degrees() - degrees).abs() < 1e-3, "{face} at {time}");
         }
+        // A mark within a frame, and one at a frame.
+        let marked = motion.clone().with_teleports(&[0.3, 1.0]).unwrap();
+        for (time, degrees, by, jumps) in [
+            (0.0, 0.0_f32, 0.0, 0),
+            (0.29, 0.0, 0.0, 0),
+            (0.3, 40.0, 0.0, 1),
+            (0.99, 40.0, 0.0, 1),
+            (1.0, 40.0, 0.1, 2),
+        ] {
+            let pose = marked.pose(time, pivot);
+            assert!(pose.point(pivot).distance(pivot + Vec3::X * by) < 1e-6, "{time}");
+            let face = pose.direction(Vec3::Z);
+            assert!((face.x.atan2(face.z).to_degrees() - degrees).abs() < 1e-3, "{face} at {time}");
+            assert_eq!((marked.jumps_until(time), motion.jumps_until(time)), (Some(jumps), None));
+        }
+        assert!(motion.clone().with_teleports(&[f64::NAN]).is_err());
         let absent = RecordedMotion::load(&path, "Hips", None, 1.0).unwrap_err().to_string();
         assert!(absent.contains("no joint `Hips` among `Head`") && !absent.contains("export"), "{absent}");
     }

@@ -1,14 +1,12 @@
 //! A body whose vertices move by themselves: where its vertices are at a time, and the body frames that follow.
 
+use std::ops::Range;
 use std::sync::{Arc, Mutex};
 
 use glam::{Quat, Vec3};
 
-use crate::gltf::Rig;
 use crate::rigid_fit::rigid_fit;
-use crate::teleports::Teleports;
-use crate::vertex_frames::VertexFrames;
-use crate::{BodyError, BodyFrame};
+use crate::{BodyError, BodyFrame, Playback, VertexMotion};
 
 /// Most vertices that the head's transform is fitted to.
 const FITTED: usize = 2048;
@@ -17,156 +15,79 @@ const LEAST: usize = 8;
 /// Largest coordinate that is taken for a place \[m\].
 const FARTHEST: f32 = 1e6;
 
-/// Motion of the vertices of a mesh, in the units and axes of its file, in the order of the mesh.
-#[derive(Clone, Debug)]
-pub struct VertexMotion {
-    source: Source,
-    teleports: Teleports,
-}
-
-#[derive(Clone, Debug)]
-enum Source {
-    Clip(Arc<Rig>),
-    /// Frames, and the positions at rest where they are not those of the first frame.
-    Frames(Arc<VertexFrames>, Option<Arc<[Vec3]>>),
-}
-
-impl VertexMotion {
-    pub(crate) fn of_clip(rig: Rig) -> Self {
-        let teleports = rig.teleports().clone();
-        Self { source: Source::Clip(Arc::new(rig)), teleports }
-    }
-
-    pub(crate) fn of_frames(frames: VertexFrames) -> Self {
-        Self { source: Source::Frames(Arc::new(frames), None), teleports: Teleports::default() }
-    }
-
-    /// Vertices at times \[s\]: shape `[frame][vertex]`. Between two times they move on straight lines; at rest they are
-    /// where the first frame has them.
-    ///
-    /// # Errors
-    /// No frame; as many times as frames, finite and rising; as many vertices in each frame as in the first, finite.
-    pub fn sampled(times: Vec<f64>, frames: Vec<Vec<Vec3>>) -> Result<Self, BodyError> {
-        VertexFrames::new(times, frames).map(Self::of_frames)
-    }
-
-    /// The motion of a mesh whose vertices have these positions at rest, units of the file; clips have their own rest.
-    #[must_use]
-    pub fn with_rest(self, rest: &[Vec3]) -> Self {
-        let source = match self.source {
-            Source::Frames(frames, _) => Source::Frames(frames, Some(rest.into())),
-            clip => clip,
-        };
-        Self { source, ..self }
-    }
-
-    /// Adds marks, times of the motion \[s\] at which the body is elsewhere at once: hair is carried there, not pulled.
-    /// Between the samples on both sides of a mark nothing is interpolated. The earlier one is held until the mark. In a
-    /// motion that begins again a mark at 0 makes the beginning a jump.
-    ///
-    /// # Errors
-    /// Times that are not finite.
-    pub fn with_teleports(self, times: &[f64]) -> Result<Self, BodyError> {
-        let teleports = Teleports::new(&[self.teleports.times(), times].concat())?;
-        Ok(Self { teleports, ..self })
-    }
-
-    /// Times of the marks \[s\], rising: those of the file and those that were added.
-    pub fn teleports(&self) -> &[f64] {
-        self.teleports.times()
-    }
-
-    /// Time of the last sample \[s\]; those before the first and after the last are held.
-    pub fn end(&self) -> f64 {
-        match &self.source {
-            Source::Clip(rig) => rig.end(),
-            Source::Frames(frames, _) => frames.end(),
-        }
-    }
-
-    /// Positions of all vertices at a time \[s\], units of the file.
-    pub fn positions(&self, time: f64) -> Vec<Vec3> {
-        match &self.source {
-            Source::Clip(rig) => rig.positions(Some(time), &self.teleports),
-            Source::Frames(frames, _) => frames.positions(time, &self.teleports),
-        }
-    }
-
-    /// Positions of all vertices at rest, units of the file.
-    fn rest(&self) -> Vec<Vec3> {
-        match &self.source {
-            Source::Clip(rig) => rig.positions(None, &self.teleports),
-            Source::Frames(_, Some(rest)) => rest.to_vec(),
-            Source::Frames(frames, None) => frames.positions(f64::NEG_INFINITY, &self.teleports),
-        }
-    }
-
-    /// Of some vertices those that are known to move as one.
-    fn rigid(&self, vertices: &[u32]) -> Vec<u32> {
-        match &self.source {
-            Source::Clip(rig) => rig.rigid(vertices),
-            Source::Frames(..) => Vec::new(),
-        }
-    }
-
-    /// Number of vertices.
-    pub fn vertex_count(&self) -> usize {
-        match &self.source {
-            Source::Clip(rig) => rig.vertex_count(),
-            Source::Frames(frames, _) => frames.vertex_count(),
-        }
-    }
-}
-
-/// Time of a motion at a time of the scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Playback {
-    /// Time of the motion at the time 0 of the scene \[s\].
-    pub start: f64,
-    /// Seconds of the motion in a second of the scene.
-    pub speed: f64,
-    /// Begins again after its end.
-    pub is_loop: bool,
-}
-
-impl Default for Playback {
-    fn default() -> Self {
-        Self { start: 0.0, speed: 1.0, is_loop: false }
-    }
-}
-
-impl Playback {
-    /// Time \[s\] of a motion that ends at `end` \[s\], at a time of the scene \[s\].
-    pub fn time(&self, time: f64, end: f64) -> f64 {
-        let time = self.start + self.speed * time;
-        let time = if self.is_loop && end > 0.0 { time.rem_euclid(end) } else { time };
-        if time.is_finite() { time } else { 0.0 }
-    }
-
-    /// Number of times that the motion has begun again.
-    fn rounds(&self, time: f64, end: f64) -> f64 {
-        let is_round = self.is_loop && end > 0.0;
-        if is_round { ((self.start + self.speed * time) / end).floor() } else { 0.0 }
-    }
-}
-
 /// Body frames over time of a mesh in head space whose first vertices move: the skin, and the rigid transform of the
 /// head, which is that of the vertices about the roots.
 #[derive(Clone, Debug)]
 pub struct SkinMotion {
+    /// Motions of vertices; those of no motion ride the head.
+    parts: Vec<Moving>,
+    /// Vertices at rest \[m\], head space.
+    rest: Arc<[Vec3]>,
+    /// Vertices that move with the head.
+    fitted: Arc<[u32]>,
+    /// The frame of the times of the motions that were asked for last.
+    last: Arc<Mutex<Option<(Vec<f64>, BodyFrame)>>>,
+}
+
+/// Vertices of a mesh that move as one motion has them.
+#[derive(Clone, Debug)]
+struct Moving {
     motion: VertexMotion,
     playback: Playback,
-    /// Vertices at rest \[m\], head space; those beyond the motion's ride the head.
-    rest: Arc<[Vec3]>,
+    /// Number of its first vertex in the mesh.
+    first: usize,
     /// Vertices at rest as the motion has them, units of the file.
     origin: Arc<[Vec3]>,
     /// Metres of a unit of the file, and its rotation into head space.
     scale: f32,
     turn: Quat,
-    /// Vertices that move with the head.
-    fitted: Arc<[u32]>,
-    /// The frame of the time that was asked for last.
-    last: Arc<Mutex<Option<(f64, BodyFrame)>>>,
+}
+
+impl Moving {
+    /// The vertices of a mesh from the one of number `first` on, as a motion has them.
+    ///
+    /// # Errors
+    /// Fewer vertices in the mesh, of `count`, than the motion has.
+    fn new(
+        motion: VertexMotion,
+        playback: Playback,
+        (first, count): (usize, usize),
+        (scale, turn): (f32, Quat),
+    ) -> Result<Self, BodyError> {
+        let (own, origin) = (motion.vertex_count(), motion.rest());
+        if own > count.saturating_sub(first) || own == 0 || origin.len() != own {
+            let (found, expected) = (format!("{own}, for a mesh of {count}"), "those of the mesh");
+            return Err(BodyError::Value { what: "the number of vertices that move", found, expected });
+        }
+        Ok(Self { motion, playback, first, origin: origin.into(), scale, turn })
+    }
+
+    /// Indices of its vertices in the mesh.
+    fn range(&self) -> Range<usize> {
+        self.first..self.first + self.origin.len()
+    }
+
+    /// Time of the motion at one of the scene \[s\].
+    fn time(&self, time: f64) -> f64 {
+        self.playback.time(time, self.motion.end())
+    }
+
+    /// Number of marks up to a time of the scene \[s\].
+    fn passed(&self, time: f64) -> i64 {
+        self.motion.marks().passed(self.time(time), self.playback.rounds(time, self.motion.end()))
+    }
+
+    /// Writes the places of its vertices at a time of the motion \[s\] over those at rest, head space \[m\].
+    fn place(&self, time: f64, rest: &mut [Vec3]) {
+        let moved = self.motion.positions(time);
+        for ((rest, origin), moved) in rest[self.range()].iter_mut().zip(&*self.origin).zip(moved) {
+            // Vertices that do not move stay to the bit; those that overflow are held at rest.
+            let place = *rest + self.turn * (self.scale * (moved - *origin));
+            if place.is_finite() && place.abs().max_element() < FARTHEST {
+                *rest = place;
+            }
+        }
+    }
 }
 
 impl SkinMotion {
@@ -180,14 +101,10 @@ impl SkinMotion {
         motion: VertexMotion,
         playback: Playback,
         rest: &[Vec3],
-        (scale, turn): (f32, Quat),
+        placing: (f32, Quat),
         head: &[u32],
     ) -> Result<Self, BodyError> {
-        let (count, origin) = (motion.vertex_count(), motion.rest());
-        if count > rest.len() || count == 0 || origin.len() != count {
-            let (found, expected) = (format!("{count}, for a mesh of {}", rest.len()), "those of the mesh");
-            return Err(BodyError::Value { what: "the number of vertices that move", found, expected });
-        }
+        let count = motion.vertex_count();
         if let Some(index) = head.iter().find(|index| **index as usize >= count) {
             let (found, expected) = (format!("{index}, of {count}"), "a vertex that moves");
             return Err(BodyError::Value { what: "a vertex of the head", found, expected });
@@ -196,58 +113,89 @@ impl SkinMotion {
         let rigid = motion.rigid(&all);
         let all = if rigid.len() < LEAST { all } else { rigid };
         let every = all.len().div_ceil(FITTED);
+        let body = Moving::new(motion, playback, (0, rest.len()), placing)?;
         Ok(Self {
-            motion,
-            playback,
+            parts: vec![body],
             rest: rest.into(),
-            origin: origin.into(),
-            scale,
-            turn,
             fitted: all.into_iter().step_by(every).collect(),
             last: Arc::default(),
         })
     }
 
+    /// Adds a motion of further vertices, from the one of number `first` on: a part of the body in a file of its own. It
+    /// moves beside the body, in the space that both files share, and does not ride the head.
+    ///
+    /// # Errors
+    /// Fewer vertices than the motion has; vertices that move already.
+    pub fn with_part(
+        self,
+        first: usize,
+        motion: VertexMotion,
+        playback: Playback,
+        placing: (f32, Quat),
+    ) -> Result<Self, BodyError> {
+        let part = Moving::new(motion, playback, (first, self.rest.len()), placing)?;
+        let own = part.range();
+        if let Some(other) =
+            self.parts.iter().map(Moving::range).find(|other| own.start < other.end && other.start < own.end)
+        {
+            let (found, expected) = (format!("{own:?}, beside {other:?}"), "vertices of no other motion");
+            return Err(BodyError::Value { what: "the vertices of a part", found, expected });
+        }
+        Ok(Self { parts: [self.parts, vec![part]].concat(), last: Arc::default(), ..self })
+    }
+
     /// The body at a time of the scene \[s\].
     pub fn frame(&self, time: f64) -> BodyFrame {
         let frame = self.frame_without_marks(time);
-        let marks = &self.motion.teleports;
-        if marks.times().is_empty() {
-            return frame;
+        let marked = |part: &&Moving| !part.motion.teleports().is_empty();
+        let passed = self.parts.iter().filter(marked).map(|part| part.passed(time));
+        match passed.reduce(i64::saturating_add) {
+            Some(passed) => frame.after_jumps(passed),
+            None => frame,
         }
-        let end = self.motion.end();
-        frame.after_jumps(marks.passed(self.playback.time(time, end), self.playback.rounds(time, end)))
     }
 
     fn frame_without_marks(&self, time: f64) -> BodyFrame {
-        let time = self.playback.time(time, self.motion.end());
-        let known = |last: &Option<(f64, BodyFrame)>| {
-            last.as_ref().filter(|(known, _)| *known == time).map(|(_, frame)| frame.clone())
+        let times: Vec<f64> = self.parts.iter().map(|part| part.time(time)).collect();
+        let known = |last: &Option<(Vec<f64>, BodyFrame)>| {
+            last.as_ref().filter(|(known, _)| *known == times).map(|(_, frame)| frame.clone())
         };
         // A thread that ended while it held the lock left a whole frame or none.
         let lock = || self.last.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         if let Some(frame) = known(&lock()) {
             return frame;
         }
-        let frame = self.computed(time);
-        *lock() = Some((time, frame.clone()));
+        let frame = self.computed(&times);
+        *lock() = Some((times, frame.clone()));
         frame
     }
 
-    /// The body at a time of the motion \[s\].
-    fn computed(&self, time: f64) -> BodyFrame {
-        let moved = self.motion.positions(time);
-        let place = |((rest, origin), moved): ((&Vec3, &Vec3), Vec3)| {
-            // Vertices that do not move stay to the bit; those that overflow are held at rest.
-            let place = *rest + self.turn * (self.scale * (moved - *origin));
-            if place.is_finite() && place.abs().max_element() < FARTHEST { place } else { *rest }
-        };
-        let placed: Vec<Vec3> = self.rest.iter().zip(&*self.origin).zip(moved).map(place).collect();
-        let world_from_head = rigid_fit(&self.rest, &placed, &self.fitted);
+    /// The body at times of its motions \[s\].
+    fn computed(&self, times: &[f64]) -> BodyFrame {
+        let mut skin = self.rest.to_vec();
+        self.parts.iter().zip(times).for_each(|(part, time)| part.place(*time, &mut skin));
+        let world_from_head = rigid_fit(&self.rest, &skin, &self.fitted);
         let head_from_world = world_from_head.inverse();
-        let riding = self.rest[placed.len()..].iter().copied();
-        let skin = placed.iter().map(|place| head_from_world.point(*place)).chain(riding);
-        BodyFrame::from(world_from_head).with_skin(skin.collect::<Vec<_>>())
+        for range in self.parts.iter().map(Moving::range) {
+            skin[range].iter_mut().for_each(|place| *place = head_from_world.point(*place));
+        }
+        BodyFrame::from(world_from_head).with_skin(skin)
+    }
+
+    /// Greatest distance \[m\] between where vertices are at the end of a motion that begins again and where they are at its
+    /// beginning; 0 where no motion does, and for one whose beginning is marked as a jump.
+    pub fn gap_of_loops(&self) -> f32 {
+        let gap = |part: &Moving| {
+            let end = part.motion.end();
+            if !part.playback.is_loop || end <= 0.0 || part.motion.teleports().contains(&0.0) {
+                return 0.0;
+            }
+            let [from, to] = [0.0, end].map(|time| part.motion.positions(time));
+            let apart = from.iter().zip(&to).map(|(from, to)| part.scale * from.distance(*to));
+            apart.filter(|apart| apart.is_finite()).fold(0.0, f32::max)
+        };
+        self.parts.iter().map(gap).fold(0.0, f32::max)
     }
 }
 
@@ -292,15 +240,6 @@ mod tests {
     }
 
     #[test]
-    fn playback_starts_goes_on_and_begins_again() {
-        let playback = Playback { start: 0.5, speed: 2.0, is_loop: true };
-        assert_eq!([0.0, 0.5, 1.0].map(|time| playback.time(time, 2.0)), [0.5, 1.5, 0.5]);
-        assert_eq!(Playback { speed: -1.0, ..playback }.time(1.0, 2.0), 1.5);
-        assert_eq!(Playback { is_loop: false, ..playback }.time(5.0, 2.0), 10.5);
-        assert_eq!(playback.time(f64::NAN, 2.0), 0.0);
-    }
-
-    #[test]
     fn a_mark_holds_what_was_before_it_and_numbers_the_frames() {
         let (motion, rest, turn) = motion();
         let motion = motion.with_teleports(&[0.6]).unwrap();
@@ -321,6 +260,41 @@ mod tests {
         let unmarked = self::motion().0;
         let body = SkinMotion::new(unmarked, Playback::default(), &rest, (0.01, turn), &[]).unwrap();
         assert!(!body.frame(0.3).jumps_to(&body.frame(0.9)));
+    }
+
+    #[test]
+    fn a_part_moves_beside_the_body_at_its_own_times() {
+        let (motion, mut rest, turn) = motion();
+        let count = rest.len();
+        // A part of two vertices that rises by 20 cm in half a second, and one vertex that rides the head.
+        let places = [vec3(0.0, 0.0, 100.0), vec3(5.0, 0.0, 100.0)];
+        let raised = places.map(|place| place + Vec3::Z * 20.0);
+        let part = VertexMotion::sampled(vec![0.0, 0.5], vec![places.to_vec(), raised.to_vec()]).unwrap();
+        rest.extend([vec3(0.0, 1.1, 0.2), vec3(0.05, 1.1, 0.2), Vec3::splat(9.0)]);
+        let body = SkinMotion::new(motion, Playback::default(), &rest, (0.01, turn), &[0, 1, 2, 3]).unwrap();
+        let playback = Playback { start: 0.25, speed: -1.0, is_loop: true };
+        let both = body.clone().with_part(count, part.clone(), playback, (0.01, turn)).unwrap();
+        for (time, share) in [(0.0, 0.5), (0.125, 0.25), (0.5, 0.5), (0.625, 0.25)] {
+            let (alone, frame) = (body.frame(time), both.frame(time));
+            assert_eq!(alone.world_from_head(), frame.world_from_head());
+            let (skin, expected) = (frame.skin().unwrap(), alone.skin().unwrap());
+            assert_eq!(skin[..count], expected[..count], "the body moves as alone");
+            for vertex in count..count + 2 {
+                let world = frame.world_from_head().point(skin[vertex]);
+                assert!(world.distance(rest[vertex] + Vec3::Y * 0.2 * share) < 1e-6, "{world} at {time}");
+            }
+            assert_eq!(skin[count + 2], rest[count + 2], "rides the head");
+        }
+        // Its marks count with those of the body; its loop does not close.
+        let marked = |own: VertexMotion| body.clone().with_part(count, own, playback, (0.01, turn)).unwrap();
+        assert!(!both.frame(0.2).jumps_to(&both.frame(0.3)));
+        let jumping = marked(part.clone().with_teleports(&[0.0]).unwrap());
+        assert!(jumping.frame(0.2).jumps_to(&jumping.frame(0.3)));
+        assert!((both.gap_of_loops() - 0.2).abs() < 1e-6 && jumping.gap_of_loops() == 0.0);
+        assert_eq!(body.gap_of_loops(), 0.0);
+        let refused = |first| body.clone().with_part(first, part.clone(), playback, (1.0, turn)).unwrap_err();
+        assert!(refused(4).to_string().contains("4..6, beside 0..5"));
+        assert!(refused(7).to_string().contains("2, for a mesh of 8"));
     }
 
     #[test]

@@ -143,6 +143,20 @@ impl SkinSolid {
         boxes
     }
 
+    /// The boxes of all leaves, each with the most of the numbers of its vertices.
+    pub(crate) fn shifts_of_leaves<'a>(
+        &'a self,
+        boxes: &'a [[Vec3A; 2]],
+        squares: &'a [f32],
+    ) -> impl Iterator<Item = ([Vec3A; 2], f32)> + 'a {
+        let leaves = self.nodes.iter().zip(boxes).filter(|(node, _)| node.right == 0);
+        leaves.map(|(node, corners)| {
+            let triangles = &self.triangles[node.range[0] as usize..node.range[1] as usize];
+            let all = triangles.iter().flatten().map(|corner| squares[*corner as usize]);
+            (*corners, all.fold(0.0, f32::max))
+        })
+    }
+
     /// Positions of all vertices \[m\]: those of the skin, of a mesh at rest without any, and the middles of rims.
     pub(crate) fn positions(&self, skin: Option<&[Vec3]>) -> Vec<Vec3> {
         let Some(skin) = skin else { return self.rest.clone() };

@@ -47,7 +47,9 @@ enum Local {
 #[derive(Debug)]
 struct Part {
     node: usize,
-    /// Positions before morphing, space of the mesh.
+    /// A place amid the positions, space of the mesh: far from the origin of the mesh single precision holds the way from it.
+    middle: DVec3,
+    /// Positions before morphing, from the middle.
     base: Vec<Vec3>,
     /// Number of a morph target, and the vertices that it moves.
     targets: Vec<(usize, Vec<(u32, Vec3)>)>,
@@ -138,6 +140,11 @@ impl Rig {
         let Some(accessor) = part.get(&Semantic::Positions) else { return Ok(()) };
         let count = accessor.count();
         let base = buffers.vectors(&accessor, count)?;
+        let (low, high) = base.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), place| {
+            (low.min(place.as_dvec3()), high.max(place.as_dvec3()))
+        });
+        let middle = Some(0.5 * (low + high)).filter(|middle| middle.is_finite()).unwrap_or_default();
+        let base = base.iter().map(|place| (place.as_dvec3() - middle).as_vec3()).collect();
         let mut targets = Vec::new();
         for (index, target) in part.morph_targets().enumerate() {
             let Some(deltas) = target.positions().filter(|_| self.uses(node.index(), index)) else {
@@ -161,7 +168,7 @@ impl Rig {
             }
             None => None,
         };
-        self.parts.push(Part { node: node.index(), base, targets, skin });
+        self.parts.push(Part { node: node.index(), middle, base, targets, skin });
         Ok(())
     }
 
@@ -169,9 +176,9 @@ impl Rig {
     /// before its first key and after its last; without a time at rest. Nothing is interpolated over marks.
     pub fn positions(&self, time: Option<f64>, teleports: &Teleports) -> Vec<Vec3> {
         let pose = self.pose(time, teleports);
-        let joints: Vec<Vec<Mat4>> = (self.skins.iter())
+        let joints: Vec<Vec<DMat4>> = (self.skins.iter())
             .map(|skin| {
-                let placed = |(joint, own): &(usize, DMat4)| (pose.world_from_node[*joint] * *own).as_mat4();
+                let placed = |(joint, own): &(usize, DMat4)| pose.world_from_node[*joint] * *own;
                 skin.iter().flatten().map(placed).collect()
             })
             .collect();
@@ -180,13 +187,14 @@ impl Rig {
             let morphed = part.morphed(&pose.weights[part.node]);
             match &part.skin {
                 Some((skin, influences)) => {
+                    let joints: Vec<Mat4> = joints[*skin].iter().map(|joint| part.amid(joint)).collect();
                     let place = |(vertex, position): (usize, &Vec3)| {
-                        influences.transform(vertex, &joints[*skin]).0.transform_point3(*position)
+                        influences.transform(vertex, &joints).0.transform_point3(*position)
                     };
                     positions.extend(morphed.iter().enumerate().map(place));
                 }
                 None => {
-                    let transform = pose.world_from_node[part.node].as_mat4();
+                    let transform = part.amid(&pose.world_from_node[part.node]);
                     positions.extend(morphed.iter().map(|position| transform.transform_point3(*position)));
                 }
             }
@@ -248,9 +256,9 @@ impl Rig {
         self.names.iter().flatten().map(String::as_str)
     }
 
-    /// Transform of a node into the world at a time of the clip \[s\].
-    pub fn world_from_node(&self, node: usize, time: f64) -> DMat4 {
-        self.pose(Some(time), &self.teleports).world_from_node[node]
+    /// Transform of a node into the world at a time of the clip \[s\]. Nothing is interpolated over marks.
+    pub fn world_from_node(&self, node: usize, time: f64, teleports: &Teleports) -> DMat4 {
+        self.pose(Some(time), teleports).world_from_node[node]
     }
 
     fn pose(&self, time: Option<f64>, teleports: &Teleports) -> Pose {
@@ -315,7 +323,13 @@ impl Local {
 }
 
 impl Part {
-    /// Positions after morphing, space of the mesh.
+    /// The transform of positions from the middle, rounded once: far from the origin of the mesh its parts cancel.
+    fn amid(&self, transform: &DMat4) -> Mat4 {
+        let place = transform.transform_point3(self.middle);
+        DMat4 { w_axis: place.extend(1.0), ..*transform }.as_mat4()
+    }
+
+    /// Positions after morphing, from the middle.
     fn morphed(&self, weights: &[f64]) -> Cow<'_, [Vec3]> {
         let mut morphed = Cow::Borrowed(&self.base[..]);
         for (target, moved) in &self.targets {

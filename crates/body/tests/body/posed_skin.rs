@@ -205,3 +205,32 @@ fn depths_have_exact_sides_about_a_fold() {
     assert!(by_faces > 0 && inside > 500, "{by_faces} outside count as inside by their faces, {inside} are");
     assert!(wrong.is_empty(), "{} wrong: {:?}", wrong.len(), &wrong[..wrong.len().min(4)]);
 }
+
+/// Bounds carried through a step against the exact distances after it: near the end that swings they fall by its way, and at
+/// the foot that rests they stay.
+#[test]
+fn a_bound_carried_through_a_step_is_no_more_than_the_distance_after_it() {
+    let mesh = tube();
+    let solid = solid(&mesh, 0.01);
+    let [start, end] = [1.0, 1.1].map(|angle| bent(&mesh, angle));
+    let [before, after] =
+        [&start, &end].map(|skin| PosedSkin::new(&solid, [Some(skin), Some(skin)]).unwrap());
+    let step = PosedSkin::new(&solid, [Some(&start), Some(&end)]).unwrap();
+    assert!(step.most_shift() > 0.01);
+    let (mut tight, mut held) = (0.0_f32, 0);
+    for index in 0..3000 {
+        let share = index as f32;
+        let around = vec3((1.3 * share).sin(), 0.6 + (2.1 * share).cos(), (0.7 * share).sin());
+        let point = 0.25 * around + vec3(0.0, 0.05, 0.08);
+        let [was, is] = [&before, &after].map(|skin| skin.nearest(point, PosedSkin::UNKNOWN).distance);
+        if was < 0.0 {
+            continue;
+        }
+        let least = step.at_least_after(point, was);
+        assert!(least <= is + 1e-6, "{point}: {least} m at least, from {was} m to {is} m");
+        tight = tight.max(was - is - (was - least));
+        held += usize::from(was - least < 0.25 * step.most_shift());
+    }
+    assert!(held > 20, "{held} bounds fall by little: they are local");
+    assert!(tight > -1e-3, "the most that the skin comes nearer is nearly the bound: {tight}");
+}

@@ -1,7 +1,8 @@
 //! Planes on a skin that moves by itself: they ride its triangles from step to step.
 //!
 //! A plane near the skin moves with its triangle, so that hair which rests there asks for no distance. The distance of a
-//! point far from it stays a lower bound when the most that a vertex moves is taken off. What a plane needs for this, its
+//! point far from it stays a lower bound when the most that a vertex near it moves is taken off: a head that turns on
+//! shoulders asks nothing for the hair on it. What a plane needs for this, its
 //! rider, lies in a further plane for each point, behind those of all carriers.
 
 use glam::Vec3;
@@ -20,6 +21,10 @@ const CLOSE: f32 = 0.02;
 const MOST_OFF: f32 = 5e-4;
 const OF_ERROR: f32 = 2.0;
 const OF_SHIFT: f32 = 0.02;
+/// Way \[m\] of the skin about a plane through a step below which the plane stays where it is.
+const STILL: f32 = 1e-6;
+/// Most that a vertex may move \[m\] where planes stay: their triangles end within reach of where they were.
+const SLOW: f32 = 0.03;
 
 impl Group<'_> {
     /// Way \[m\] of the material under points of one index through the step beside that of the carrier, world space.
@@ -70,20 +75,30 @@ impl Contacts {
 }
 
 fn ride(plane: &mut Plane, rider: &mut Plane, skin: &PosedSkin) {
-    let shift = skin.most_shift();
+    let most = skin.most_shift();
     for lane in 0..LANES {
         if !plane.distance.0[lane].is_finite() {
             continue;
         }
         let triangle = Rider(rider).triangle(lane);
         let anchor = plane.anchor.get(lane);
-        if shift == 0.0 {
+        if most == 0.0 {
             rider.anchor.set(lane, Vec3::ZERO);
             continue;
         }
-        if plane.distance.0[lane] > CLOSE {
-            plane.distance.0[lane] -= shift;
+        let distance = plane.distance.0[lane];
+        if distance > CLOSE {
+            plane.distance.0[lane] = skin.at_least_after(anchor, distance);
             rider.anchor.set(lane, skin.drift(triangle));
+            continue;
+        }
+        let shift = skin.shift_about(anchor);
+        if shift < STILL && most < SLOW {
+            rider.anchor.set(lane, Vec3::ZERO);
+            rider.distance.0[lane] += (OF_ERROR + OF_SHIFT) * shift;
+            if rider.distance.0[lane] > MOST_OFF {
+                plane.forget(lane);
+            }
             continue;
         }
         let Some(motion) = skin.motion(triangle, anchor) else {

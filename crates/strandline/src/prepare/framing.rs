@@ -6,7 +6,7 @@ use crate::{
     Error, HeadMotion, Scene,
     body::{Aabb, Mesh, RecordedMotion},
     groom::Guides,
-    scene::solid_motion::solid_motions,
+    scene::{TeleportSection, solid_motion::solid_motions},
 };
 
 /// Motion of the head: about the scene's pivot, the body's, or a low point in the box around hair and body.
@@ -15,7 +15,8 @@ pub fn head_motion(scene: &Scene, pivot: Option<Vec3>, bounds: Aabb) -> Result<H
     let section = &scene.motion;
     let load = |file| {
         let clip = section.clip.as_deref();
-        RecordedMotion::load(&scene.path(file), &section.joint, clip, f64::from(section.scale))
+        let motion = RecordedMotion::load(&scene.path(file), &section.joint, clip, f64::from(section.scale))?;
+        motion.with_teleports(&TeleportSection::times(&section.teleports))
     };
     let recorded = section.file.as_ref().map(|file| load(file)).transpose()?;
     let solids = solid_motions(&scene.colliders, section.interpolation)?;

@@ -45,8 +45,13 @@ pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
     }
     loading.skin = match (loading.motion.take(), &loading.mesh) {
         (Some(motion), Some(mesh)) => {
-            let placing = moving::placing(scene, loading.placings.body);
-            Some(moving::skin(scene, motion, mesh, placing, &guides)?)
+            let body = loading.placings.body;
+            let skin = moving::skin(scene, motion, mesh, moving::placing(scene, body), &guides)?;
+            let parts = std::mem::take(&mut loading.part_motions).into_iter().zip(&loading.part_starts);
+            let skin =
+                moving::with_parts(scene, skin, parts.map(|(motion, start)| (*start).zip(motion)), body)?;
+            notes.extend(moving::open_loop(&skin));
+            Some(skin)
         }
         _ => None,
     };

@@ -26,18 +26,22 @@ const ALIKE: f32 = 30.0;
 /// Least guides of a file that marks none, where others mark some.
 const LEAST_GUIDES: usize = 16;
 
-/// Adds a scene's further meshes to the first, which is in head space. Returns the mesh that hair hits, where it is not
-/// the drawn one, and the parts that may cover hair.
+/// The mesh that hair hits, where it is not the drawn one, the parts that may cover hair, and for each part the number of
+/// its first vertex in the drawn body; none of one that is not drawn.
+type Joined = (Option<Mesh>, Vec<Cover>, Vec<Option<usize>>);
+
+/// Adds a scene's further meshes to the first, which is in head space.
 pub(super) fn add_meshes(
     scene: &Scene,
     drawn: &mut Mesh,
     further: Vec<Mesh>,
     first: Placing,
-) -> Result<(Option<Mesh>, Vec<Cover>), Error> {
-    let mut covers = Vec::new();
+) -> Result<Joined, Error> {
+    let (mut covers, mut starts) = (Vec::new(), Vec::new());
     let mut solid = (!further.is_empty()).then(|| drawn.clone());
     for (part, mut mesh) in scene.body.parts.iter().zip(further) {
         place_mesh(&mut mesh, part_placing(part, first), part.rotation, part.translation);
+        starts.push(part.visible.then_some(drawn.positions.len()));
         if part.visible {
             drawn.append(&mesh)?;
         }
@@ -48,7 +52,7 @@ pub(super) fn add_meshes(
         }
         covers.push(Cover { mesh, name: part.file.display().to_string(), covers: part.covers });
     }
-    Ok((solid, covers))
+    Ok((solid, covers, starts))
 }
 
 /// Placement of a further mesh, given that of the first.

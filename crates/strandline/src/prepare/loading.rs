@@ -36,6 +36,10 @@ pub(super) struct Loading<'a> {
     pub shown: Option<Shown>,
     /// Motion of the drawn body's vertices, in the units and axes of its file, from `read`.
     pub motion: Option<VertexMotion>,
+    /// Motions of those of `body.parts` that have a clip, in the units and axes of their files, from `read`: for each part.
+    pub part_motions: Vec<Option<VertexMotion>>,
+    /// Numbers of the first vertices of the drawn ones of `body.parts` in the drawn body, from `place`: for each part.
+    pub part_starts: Vec<Option<usize>>,
     /// Motion of the body in head space, from `guides`.
     pub skin: Option<SkinMotion>,
     /// The mesh that hair hits, where it is not the drawn one.
@@ -85,6 +89,8 @@ impl<'a> Loading<'a> {
             further_meshes: Vec::new(),
             shown: None,
             motion: None,
+            part_motions: Vec::new(),
+            part_starts: Vec::new(),
             skin: None,
             solid_mesh: None,
             skull: None,

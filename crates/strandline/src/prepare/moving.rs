@@ -3,16 +3,19 @@
 use glam::{Quat, Vec3};
 use strandline_base::math;
 
-use super::placing::Placing;
+use super::{join::part_placing, placing::Placing};
 use crate::{
     Error, Scene,
     body::{Mesh, Playback, SkinMotion, VertexMotion},
     groom::Guides,
+    scene::TeleportSection,
 };
 
 /// Roots whose places on the body are looked up, and the vertices below which the whole body stands for its head.
 const ROOTS: usize = 256;
 const LEAST: usize = 8;
+/// Distance \[m\] between the end of a loop and its beginning from which on it is told.
+const OPEN: f32 = 0.01;
 
 /// Metres of a unit of the body's file, and its rotation into head space.
 pub(super) fn placing(scene: &Scene, placing: Placing) -> (f32, Quat) {
@@ -32,10 +35,38 @@ pub(super) fn skin(
     let every = guides.strand_count().div_ceil(ROOTS).max(1);
     let roots: Vec<Vec3> =
         (0..guides.strand_count()).step_by(every).map(|strand| guides.position(strand, 0)).collect();
-    let marks: Vec<f64> = body.teleports.iter().map(|mark| mark.time).collect();
-    let motion = motion.with_teleports(&marks)?;
+    let motion = motion.with_teleports(&TeleportSection::times(&body.teleports))?;
     let head = about(mesh, motion.vertex_count(), &roots);
     Ok(SkinMotion::new(motion, playback, &mesh.positions, placing, &head)?)
+}
+
+/// The motion of a body with those of its further meshes: for each the number of its first vertex and its motion.
+pub(super) fn with_parts(
+    scene: &Scene,
+    mut skin: SkinMotion,
+    motions: impl Iterator<Item = Option<(usize, VertexMotion)>>,
+    body: Placing,
+) -> Result<SkinMotion, Error> {
+    for (part, moving) in scene.body.parts.iter().zip(motions) {
+        let Some((first, motion)) = moving else { continue };
+        let playback = Playback { start: part.start, speed: part.speed, is_loop: part.r#loop };
+        let Placing { scale, turn } = part_placing(part, body);
+        skin =
+            skin.with_part(first, motion, playback, (scale, math::pitch_yaw_roll(part.rotation) * turn))?;
+    }
+    Ok(skin)
+}
+
+/// A note where a motion that begins again ends elsewhere than it begins, without a mark there.
+pub(super) fn open_loop(skin: &SkinMotion) -> Option<String> {
+    let gap = skin.gap_of_loops();
+    (gap > OPEN).then(|| {
+        format!(
+            "body.loop: the motion ends {:.1} cm from where it begins, and hair is pulled over the gap in a step: \
+             a mark at 0 in `teleports` carries it",
+            100.0 * gap
+        )
+    })
 }
 
 /// The vertices among the first `count` nearest to places of the surface, and those that share a triangle with them, in

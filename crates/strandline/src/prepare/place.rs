@@ -59,7 +59,8 @@ fn place_body(loading: &mut Loading) -> Result<(), Error> {
     place_mesh(mesh, placing, scene.body.rotation, scene.body.translation);
     let further = std::mem::take(&mut loading.further_meshes);
     loading.skull = if further.is_empty() { None } else { Skull::of_body(mesh) };
-    (loading.solid_mesh, loading.covers) = join::add_meshes(scene, mesh, further, placing)?;
+    (loading.solid_mesh, loading.covers, loading.part_starts) =
+        join::add_meshes(scene, mesh, further, placing)?;
     Ok(())
 }
 

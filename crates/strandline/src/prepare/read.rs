@@ -1,7 +1,7 @@
 //! First stage of loading: grooms, meshes and surroundings, each in its own units and axes.
 
 use super::loading::Loading;
-use crate::Error;
+use crate::{Error, body::VertexMotion};
 
 /// Reads the grooms, the meshes and the surroundings that a scene names.
 pub(super) fn read(loading: &mut Loading) -> Result<(), Error> {
@@ -24,15 +24,21 @@ pub(super) fn read(loading: &mut Loading) -> Result<(), Error> {
         }
         None => (None, None),
     };
-    let mut mesh = |name| {
-        let (mesh, notes) = sources.mesh_noted(scene, name)?;
+    let mut mesh = |index| {
+        let (mesh, motion, notes) = sources.part(scene, index)?;
         noted.extend(notes);
-        Ok::<_, Error>(mesh)
+        Ok::<_, Error>((mesh, motion))
     };
     let parts = section.parts.iter().map(|part| groom(&part.file, part.per_strand));
     loading.further_grooms = parts.collect::<Result<_, _>>()?;
-    let parts = body.parts.iter().map(|part| mesh(&part.file));
-    loading.further_meshes = parts.collect::<Result<_, _>>()?;
+    let parts = (0..body.parts.len()).map(&mut mesh).collect::<Result<Vec<_>, _>>()?;
+    (loading.further_meshes, loading.part_motions) = parts.into_iter().unzip();
+    if let (true, None, Some(mesh)) =
+        (loading.part_motions.iter().any(Option::is_some), &loading.motion, &loading.mesh)
+    {
+        // A body that rests beside parts that move.
+        loading.motion = Some(VertexMotion::sampled(vec![0.0], vec![mesh.positions.clone()])?);
+    }
     notes.extend(noted);
     Ok(())
 }

@@ -18,6 +18,7 @@ use crate::{
         format::{self, Cleaning, Format, LoadOptions, Scale, Up},
     },
     render::Picture,
+    scene::TeleportSection,
 };
 
 /// Grooms, meshes and maps in memory, each under a name.
@@ -160,6 +161,26 @@ impl Sources {
         }
         let (mesh, motion, notes) = Mesh::load_moving(&path, clip)?;
         let noted = |note: String| format!("{}: {note}", name.display());
+        Ok((mesh, Some(motion), notes.into_iter().map(noted).collect()))
+    }
+
+    /// A part of the body in its own units and axes, its motion where it has a clip, and notes.
+    pub(super) fn part(&self, scene: &Scene, index: usize) -> Result<Body, Error> {
+        let part = &scene.body.parts[index];
+        let Some(clip) = &part.clip else {
+            let (mesh, notes) = self.mesh_noted(scene, &part.file)?;
+            return Ok((mesh, None, notes));
+        };
+        if self.meshes.contains_key(&part.file) {
+            let key = format!("body.parts[{index}].clip");
+            return Err(SettingError::new(key, "a clip of a mesh in memory", "a part from a file").into());
+        }
+        let (mesh, motion, mut notes) = Mesh::load_moving(&scene.path(&part.file), clip)?;
+        let motion = motion.with_teleports(&TeleportSection::times(&part.teleports))?;
+        if !part.visible {
+            notes.push(format!("the clip `{clip}` is not played: the part is not drawn"));
+        }
+        let noted = |note: String| format!("{}: {note}", part.file.display());
         Ok((mesh, Some(motion), notes.into_iter().map(noted).collect()))
     }
 

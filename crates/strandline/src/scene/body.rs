@@ -4,7 +4,7 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use strandline_base::{Group, Key, Kind, Row, SettingError, Table, Value, Word, choices, settings};
 
-use super::KeyframeSection;
+use super::{KeyframeSection, TeleportSection};
 use crate::{
     Error,
     body::{Build, Carrier, Collider, Eyes, Shape},
@@ -44,14 +44,18 @@ settings! {
         solid: Option<bool> = None;
         /// Presses hair that starts under it beneath it; without this a part does that covers as many roots as a hat.
         covers: Option<bool> = None;
-    }
-}
-
-settings! {
-    /// A mark of the body's motion: there it is elsewhere at once, and hair is carried with it instead of being pulled.
-    pub struct TeleportSection {
-        /// Time of the motion. Between its samples on both sides of a mark nothing is interpolated.
-        time: f64 = 0.0, required true, in [-1e6, 1e6] "s";
+        /// Clip of the part's glTF file that moves it, by its name, in the space that it shares with the body's file: clothes
+        /// with a skin of their own. Without one the part rides the head.
+        clip: Option<String> = None;
+        /// Time of the part's clip at the time 0 of the scene; the clip is held before its beginning and after its end.
+        start: f64 = 0.0, in [-1e6, 1e6] "s", slider [0.0, 10.0];
+        /// Seconds of the part's clip in a second of the scene.
+        speed: f64 = 1.0, in [-1000.0, 1000.0], slider [0.0, 4.0], more "a faster motion";
+        /// Begins the part's clip again after its end.
+        r#loop: bool = false;
+        /// Marks at which the part is elsewhere at once, beside `extras.teleports` of its clip, times of the clip: hair is
+        /// carried with the head over them.
+        teleports: Vec<TeleportSection> = Vec::new(), in [0, 100_000];
     }
 }
 

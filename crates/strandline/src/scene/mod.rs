@@ -15,6 +15,7 @@ mod motion;
 pub(crate) mod origin;
 pub(crate) mod solid_motion;
 mod surroundings;
+mod teleport;
 mod timeline;
 
 use std::path::{Path, PathBuf};
@@ -22,10 +23,7 @@ use std::path::{Path, PathBuf};
 use strandline_base::{Group, SettingError, Value, printable, read_plain, settings};
 
 pub(crate) use air::Air;
-pub use body::{
-    BodyPart, BodySection, CapsuleSection, CarrierName, ColliderSection, Model, SphereSection,
-    TeleportSection,
-};
+pub use body::{BodyPart, BodySection, CapsuleSection, CarrierName, ColliderSection, Model, SphereSection};
 pub use colors::hex_color;
 pub use devices::Devices;
 pub use film::{CameraKeyframe, CameraSection, FilmSection, KeptView, View};
@@ -34,6 +32,7 @@ pub use groom::{GroomPart, GroomSection, TieSection};
 pub use head::HeadMotion;
 pub use motion::{KeyframeSection, MotionName, MotionSection, WindKeyframe, WindSection, WindSource};
 pub use surroundings::SurroundingsSection;
+pub use teleport::TeleportSection;
 pub use timeline::TimelineSection;
 
 pub use crate::body::Interpolation;
@@ -227,6 +226,12 @@ impl Scene {
             ),
             ("motion.name", no_motion, "\"file\" without one", "motion.file"),
             (
+                "motion.teleports",
+                self.motion.file.is_none() && !self.motion.teleports.is_empty(),
+                "marks without a motion of a file",
+                "motion.file",
+            ),
+            (
                 "body.vertices",
                 no_body && self.body.vertices.is_some(),
                 "a motion without a body",
@@ -240,6 +245,12 @@ impl Scene {
         if self.body.clip.is_some() && self.body.vertices.is_some() {
             let found = "a second motion of the body";
             return Err(SettingError::new("body.clip", found, "either `body.clip` or `body.vertices`").into());
+        }
+        if let Some(index) =
+            self.body.parts.iter().position(|part| part.clip.is_none() && !part.teleports.is_empty())
+        {
+            let key = format!("body.parts[{index}].teleports");
+            return Err(SettingError::new(key, "marks of a part that does not move", "`clip` too").into());
         }
         self.picture.validate()?;
         self.motion.motion()?;

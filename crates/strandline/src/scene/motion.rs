@@ -4,6 +4,7 @@ use glam::Vec3;
 use strandline_base::math;
 use strandline_base::{choices, settings};
 
+use super::TeleportSection;
 use crate::{
     Error,
     body::{Curve, Interpolation, Key, Keyframe, Motion},
@@ -70,6 +71,9 @@ settings! {
         clip: Option<String> = None;
         /// Metres per unit of that file.
         scale: f32 = 1.0, in [1e-6, 1e6] "m";
+        /// Marks at which the joint is elsewhere at once, beside `extras.teleports` of a glTF's clip, times of the file's
+        /// motion.
+        teleports: Vec<TeleportSection> = Vec::new(), in [0, 100_000];
         /// Poses, in the order of their times; used by "keyframes".
         keyframes: Vec<KeyframeSection> = Vec::new();
     }

@@ -285,6 +285,111 @@ fn the_head_follows_a_joint_of_a_file() {
     assert!(error.contains("no joint `Hips` among `Head`"), "{error}");
 }
 
+/// The sample bust again as a part of the body, with a clip of its own.
+fn twin(clip: &str) -> BodyPart {
+    BodyPart { file: bust(), clip: Some(clip.to_owned()), solid: Some(false), ..BodyPart::default() }
+}
+
+#[test]
+fn a_part_plays_its_own_clip_beside_the_body() {
+    let mut both = scene("nod");
+    both.body.parts = vec![BodyPart { start: 0.25, speed: 2.0, r#loop: true, ..twin("shrug") }];
+    let prepared = Prepared::new(&both).unwrap();
+    let clips = ["nod", "shrug"].map(|clip| Mesh::load_moving(&bust(), clip).unwrap().1);
+    let (count, end) = (clips[0].vertex_count(), clips[1].end());
+    for time in [0.0, 0.3, 0.9, 1.7] {
+        let frame = prepared.head.frame(time);
+        let world = in_world(&frame);
+        assert_eq!(world.len(), 2 * count);
+        let own = clips[1].positions((0.25 + 2.0 * time).rem_euclid(end));
+        for (found, expected) in world.iter().zip(clips[0].positions(time).iter().chain(&own)) {
+            assert!(found.distance(*expected) < 1e-5, "{found} {expected} at {time}");
+        }
+    }
+    // A body at rest beside a part that moves.
+    both.body.clip = None;
+    let prepared = Prepared::new(&both).unwrap();
+    let frame = prepared.head.frame(0.4);
+    assert_eq!(frame.world_from_head(), Pose::IDENTITY);
+    let rest = &prepared.mesh.as_ref().unwrap().positions;
+    let moved = |range: std::ops::Range<usize>| {
+        range.map(|vertex| frame.skin().unwrap()[vertex].distance(rest[vertex])).fold(0.0, f32::max)
+    };
+    assert_eq!(moved(0..count), 0.0);
+    assert!(moved(count..2 * count) > 0.01);
+}
+
+#[test]
+fn clips_of_parts_that_cannot_be_played_are_refused_or_told() {
+    let mut wrong = scene("nod");
+    wrong.body.parts = vec![twin("walk")];
+    let error = Prepared::new(&wrong).err().unwrap().to_string();
+    assert!(error.contains("no clip `walk` among `nod`, `look`"), "{error}");
+    wrong.body.parts = vec![BodyPart { visible: false, ..twin("shrug") }];
+    let notes = Prepared::new(&wrong).unwrap().notes.join("\n");
+    assert!(notes.contains("the clip `shrug` is not played: the part is not drawn"), "{notes}");
+    let teleports = vec![TeleportSection { time: 0.5 }];
+    wrong.body.parts = vec![BodyPart { clip: None, teleports, ..twin("shrug") }];
+    let error = wrong.check().unwrap_err().to_string();
+    assert!(error.contains("body.parts[0].teleports is marks of a part that does not move"), "{error}");
+}
+
+#[test]
+fn hair_is_carried_over_marks_of_a_part_and_of_a_joint() {
+    let teleports = vec![TeleportSection { time: 0.5 }];
+    let mut part = scene("nod");
+    part.body.parts = vec![BodyPart { teleports: teleports.clone(), ..twin("shrug") }];
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("turn.bvh");
+    let text = "HIERARCHY ROOT Head { OFFSET 0 0 0 CHANNELS 3 Yrotation Xrotation Zrotation } MOTION Frames: 2 \
+                Frame Time: 1.0 0 0 0 20 0 0";
+    std::fs::write(&path, text).unwrap();
+    let mut joint = scene("nod");
+    (joint.body.clip, joint.body.file, joint.motion.name) = (None, None, MotionName::File);
+    joint.motion.teleports = teleports;
+    let error = joint.check().unwrap_err().to_string();
+    assert!(error.contains("motion.name") || error.contains("motion.teleports"), "{error}");
+    joint.motion.file = Some(path);
+    for marked in [part, joint] {
+        let head = Prepared::new(&marked).unwrap().head;
+        assert!(!head.frame(0.3).jumps_to(&head.frame(0.49)));
+        assert!(head.frame(0.49).jumps_to(&head.frame(0.5)));
+        let mut hair = Hair::open(&marked).unwrap();
+        let mut notes = Vec::new();
+        for frame in 0..40 {
+            hair.play(frame).unwrap();
+            notes.extend(hair.take_notes());
+        }
+        let jumps = notes.iter().filter(|note| note.contains("as marked: hair is carried")).count();
+        assert_eq!(jumps, 1, "{notes:?}");
+    }
+}
+
+#[test]
+fn a_loop_that_does_not_close_is_told() {
+    let notes = |change: fn(&mut Scene)| {
+        let mut loops = scene("nod");
+        loops.body.r#loop = true;
+        change(&mut loops);
+        Prepared::new(&loops).unwrap().notes.join("\n")
+    };
+    assert!(!notes(|_| {}).contains("body.loop"), "the clip ends where it begins");
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = Mesh::load(&bust(), 1.0).unwrap();
+    for frame in 0..3 {
+        write_obj(&folder.path().join(format!("walk{frame:04}.obj")), &mesh, 0.1 * frame as f32);
+    }
+    let mut walks = scene("nod");
+    (walks.body.clip, walks.body.file, walks.body.r#loop) =
+        (None, Some(folder.path().join("walk%04d.obj")), true);
+    walks.body.scale = strandline::format::Scale::Factor(1.0);
+    let open = Prepared::new(&walks).unwrap().notes.join("\n");
+    assert!(open.contains("body.loop: the motion ends 20.0 cm from where it begins"), "{open}");
+    walks.body.teleports = vec![TeleportSection { time: 0.0 }];
+    let marked = Prepared::new(&walks).unwrap().notes.join("\n");
+    assert!(!marked.contains("body.loop"), "{marked}");
+}
+
 #[test]
 fn a_word_of_the_language_is_a_key_like_others() {
     let mut scene = Scene::demo();

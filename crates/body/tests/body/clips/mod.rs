@@ -1,6 +1,8 @@
 //! Clips of glTF files: vertices at any time, held to an evaluation in double precision that is not ours, and files that
 //! are damaged.
 
+mod deep;
+
 use std::path::PathBuf;
 
 use glam::Vec3;

@@ -30,6 +30,7 @@ fn scene(key: &str, before: &str, value: &str) -> String {
     let whole = match list {
         "groom.parts" => "[groom]\nfile = \"a.hair\"\n",
         "body.parts" | "body.teleports" => "[body]\nfile = \"a.obj\"\n",
+        "motion.teleports" => "[motion]\nfile = \"a.bvh\"\n",
         _ => "",
     };
     let rest = match (list, name) {
@@ -45,7 +46,9 @@ fn scene(key: &str, before: &str, value: &str) -> String {
     };
     let rest: String =
         rest.lines().filter(|line| !line.starts_with(name)).map(|line| format!("{line}\n")).collect();
-    if key.starts_with("colliders[0].keyframes[0].") {
+    if key.starts_with("body.parts[0].teleports[0].") {
+        format!("{whole}[[body.parts]]\n{rest}clip = \"a\"\n[[body.parts.teleports]]\n{name} = {value}\n")
+    } else if key.starts_with("colliders[0].keyframes[0].") {
         format!("[[colliders]]\n{rest}[[colliders.keyframes]]\n{name} = {value}\n")
     } else if before.is_empty() {
         format!("{key} = {value}\n")

@@ -110,7 +110,9 @@ fn item(list: &str) -> toml::Table {
     let defaults = match list {
         "groom.parts" => toml::Table::try_from(GroomPart::default()),
         "body.parts" => toml::Table::try_from(BodyPart::default()),
-        "body.teleports" => toml::Table::try_from(TeleportSection::default()),
+        "body.teleports" | "body.parts.teleports" | "motion.teleports" => {
+            toml::Table::try_from(TeleportSection::default())
+        }
         "motion.keyframes" | "colliders.keyframes" => toml::Table::try_from(KeyframeSection::default()),
         "wind.keyframes" => toml::Table::try_from(strandline::scene::WindKeyframe::default()),
         "wind.sources" => toml::Table::try_from(strandline::scene::WindSource::default()),
