@@ -6,10 +6,7 @@
 use std::{thread::sleep, time::Duration};
 
 use glam::{Vec2, Vec3};
-use strandline::{
-    device::{Gpu, wgpu},
-    math::Random,
-};
+use strandline::device::{Gpu, wgpu};
 use strandline_web::Page;
 
 const SIZE: [u32; 2] = [64, 80];
@@ -149,48 +146,6 @@ fn a_page_on_a_device_is_that_of_the_processor_and_goes_on_when_the_device_is_lo
     assert!(!page.picture(None).unwrap().is_blank());
     page.set("style.style", "wavy").unwrap();
     assert!(page.frame().unwrap());
-}
-
-/// An action of a visitor at random, each of which may meet steps, points or a state on their way from the device.
-fn act(page: &mut Page, random: &mut Random, view: &wgpu::TextureView) {
-    let place = Vec2::new(random.unit(), random.unit());
-    let share = random.unit();
-    let changed = match (random.unit() * 100.0) as u32 {
-        0..30 => page.frame().map(drop),
-        30..40 => page.grab(place, 0.05 * share),
-        40..52 => page.drag(2.0 * place - 0.5),
-        52..58 => page.release(),
-        58..64 => page.reset(),
-        64..68 => page.set("groom.length", &format!("{}", 0.5 + share)),
-        68..72 => page.set("simulation.volume.enabled", &(share < 0.5).to_string()),
-        72..76 => page.set("simulation.gravity", &format!("[0, {}, 0]", -20.0 * share)),
-        76..80 => page.set("simulation.drag.factor", &format!("{}", (4.0 * share - 2.0).max(0.0))),
-        // Farther than a head turns in a frame.
-        80..86 => page.set("motion.rotation", &format!("[0, {}, 0]", 200.0 * share - 100.0)),
-        86..88 => page.set("simulation.time_step", &format!("{}", 0.002 + 0.004 * share)),
-        88..90 => page.set("style.style", if share < 0.5 { "bob" } else { "pixie" }),
-        90..94 => page.points().map(drop),
-        _ => page.draw_to(view, FORMAT).map(|drawn| assert!(drawn)),
-    };
-    changed.unwrap();
-}
-
-#[test]
-fn random_changes_on_a_device_are_all_taken_and_none_waits() {
-    let Some(gpu) = gpu() else { return };
-    let waits = gpu.waits();
-    let mut page = Page::open_on(settings(), SIZE, &gpu).unwrap();
-    let view = texture(&gpu);
-    let mut random = Random::new(40, 1);
-    for action in 0..200 {
-        act(&mut page, &mut random, &view);
-        let notes = page.take_notes();
-        assert!(page.gpu().is_some(), "action {action}: {notes:?}");
-    }
-    page.release().unwrap();
-    pass(&mut page);
-    assert!(points(&mut page).iter().all(|point| point.is_finite()));
-    assert_eq!(gpu.waits(), waits, "nothing has waited");
 }
 
 #[test]
