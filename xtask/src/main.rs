@@ -47,7 +47,8 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   web      build the browser page into out/web: the module for WebAssembly, its script, the files of
            apps/web/site. --setup gets a compiler for it where rustup has none, and with --test
            Debian's Chromium; --test compares the module in Node with the native program to the
-           bit, and opens the page in Chromium; --serve serves it on this machine
+           bit, and opens the page in Chromium; --pictures draws its poster and the pictures of docs/web.md
+           anew: look at each before you commit it; --serve serves it on this machine
   long     bare, web with --test, and the full length of the tests that `test` shortens: kills, random use of the
            window, pictures and skins on a software adapter; records the day of each that passes in
            bench/long.json. [WORD..] those alone whose names hold a word

@@ -43,4 +43,4 @@ find("pause").addEventListener("click", pause);
 // The first stage is there from the beginning.
 box(stages[0]).checked = true;
 on("ready", () => find("next").focus());
-open([...BASE, ...stages.flatMap(settings)]);
+open([...BASE, ...stages.flatMap(settings)], BASE);

@@ -1,12 +1,14 @@
 // The page: controls, files and link.
 
-import { ask, find, on, open, pause, problem, set, state } from "./stage.js";
+import { ask, find, on, open, pause, problem, set, state, turn } from "./stage.js";
 
 const stage = find("hair").parentElement;
 const controls = find("controls");
 
 // Settings of the link: keys of scenes, as `#style.style=wavy&look.preset=red`.
 const linked = () => [...new URLSearchParams(location.hash.slice(1))];
+// Hair of a visit without a link: what the poster shows.
+const PLAIN = [["style.style", "wavy"]];
 
 on("given", ({ given: settings }) => {
   const given = [];
@@ -78,6 +80,34 @@ find("link").addEventListener("click", async ({ target }) => {
   setTimeout(() => { target.textContent = "Copy link"; }, 2000);
 });
 
+// A device in the hand turns the head: by as much as it is tilted from where it was held at first.
+const LEAST_TILT = 0.5;
+let level;
+let tilted;
+function tilt({ beta, gamma }) {
+  if (beta === null || gamma === null) return;
+  level ??= { beta, gamma, ...state.turn };
+  const next = { pitch: level.pitch + beta - level.beta, yaw: level.yaw + gamma - level.gamma };
+  const way = Math.max(Math.abs(next.pitch - state.turn.pitch), Math.abs(next.yaw - state.turn.yaw));
+  if (way < LEAST_TILT) return;
+  // One message for each frame that the screen shows.
+  tilted ??= requestAnimationFrame(() => {
+    tilted = undefined;
+    if (level) turn(next.pitch, next.yaw);
+  });
+}
+find("tilt").hidden = !globalThis.DeviceOrientationEvent || navigator.maxTouchPoints === 0;
+find("tilt").addEventListener("click", async ({ target }) => {
+  const isOn = target.getAttribute("aria-pressed") === "true";
+  removeEventListener("deviceorientation", tilt);
+  level = undefined;
+  // Some systems ask the person first.
+  const answer = isOn ? "granted" : await DeviceOrientationEvent.requestPermission?.().catch(() => "denied");
+  if ((answer ?? "granted") !== "granted") return problem("The device does not tell how it is held.");
+  target.setAttribute("aria-pressed", String(!isOn));
+  if (!isOn) addEventListener("deviceorientation", tilt);
+});
+
 // Files.
 async function read(file) {
   if (file.size > 64 << 20) return problem(`${file.name}: larger than 64 MiB`);
@@ -101,5 +131,9 @@ addEventListener("drop", (event) => {
   if (event.dataTransfer.files[0]) read(event.dataTransfer.files[0]);
 });
 
-show(linked());
-open(linked());
+const given = linked();
+const isGiven = (key) => given.some(([known]) => known === key);
+// Other hair than the poster's does not begin as the poster.
+find("poster").hidden = given.length > 0;
+show(given);
+open([...PLAIN.filter(([key]) => !isGiven(key)), ...given], PLAIN);

@@ -31,9 +31,11 @@ function size() {
   return { width: Math.max(16, Math.round(box.width * factor)), height: Math.max(16, Math.round(box.height * factor)) };
 }
 
-function turn(pitch, yaw) {
+export function turn(pitch, yaw) {
   const within = (angle, most) => Math.max(-most, Math.min(most, angle));
-  state.turn = { pitch: within(pitch, FARTHEST.pitch), yaw: within(yaw, FARTHEST.yaw) };
+  const next = { pitch: within(pitch, FARTHEST.pitch), yaw: within(yaw, FARTHEST.yaw) };
+  if (next.pitch === state.turn.pitch && next.yaw === state.turn.yaw) return;
+  state.turn = next;
   set("motion.rotation", `[${state.turn.pitch.toFixed(1)}, ${state.turn.yaw.toFixed(1)}, 0]`);
 }
 
@@ -46,6 +48,16 @@ export function problem(message) {
   quiet = setTimeout(() => { find("problem").hidden = true; }, 12_000);
 }
 
+// A program that does not run here: words that stay, over a still picture where no hair has been shown.
+export function stop(message) {
+  problem(message);
+  clearTimeout(quiet);
+  find("progress").hidden = true;
+  if (state.ready) return;
+  find("poster").hidden = false;
+  find("hint").textContent = "A still picture: the hair does not move here.";
+}
+
 const HINT = find("hint").textContent;
 const hint = () => {
   find("hint").textContent = state.hand ? "Arrow keys pull the hair, Enter lets it go." : HINT;
@@ -56,6 +68,7 @@ const told = {
   ready() {
     state.ready = true;
     find("progress").hidden = true;
+    find("poster").classList.add("gone");
     if (state.gpu) ask("resize", size());
   },
   // Without a word why not, a GPU simulates and draws.
@@ -66,11 +79,8 @@ const told = {
   },
   given: ({ given }) => { seen.given = given; },
   refused: ({ message }) => problem(message),
-  gone({ message }) {
-    problem(`The program has stopped: ${message}. Load the page again.`);
-    find("progress").textContent = "Stopped";
-    find("progress").hidden = false;
-  },
+  gone: ({ message }) => stop(`The program has stopped: ${message}. Load the page again.`),
+  unable: ({ message }) => stop(`The program does not run in this browser: ${message}`),
   grabbed({ held }) {
     seen.grabbed = held;
     if (state.hand) {
@@ -88,16 +98,16 @@ const told = {
   notes() {},
   figures(figures) {
     seen.figures = figures;
-    const { rate, picture, step, still, paused, strands, width, height, gpu, why } = figures;
+    const { rate, picture, step, still, paused, strands, width, height, gpu, name, why } = figures;
     const pace = paused ? "paused" : still ? "at rest" : `${rate.toFixed(0)} frames/s`;
     const moving = still || gpu ? "" : `, step ${step.toFixed(0)} ms, picture ${picture.toFixed(0)} ms`;
-    const place = gpu ? "GPU" : `Processor (${why})`;
+    const place = gpu ? `GPU ${name}`.trim() : `Processor (${why})`;
     find("figures").textContent = `${place}, ${strands} guides, ${width} × ${height}: ${pace}${moving}`;
   },
   saved({ file }) { seen.saved = file; },
 };
 worker.onmessage = ({ data }) => told[data.type](data);
-worker.onerror = () => problem("The program does not start: this page needs a browser of 2023 or newer, and a server.");
+worker.onerror = () => stop("The program does not start: this page needs a browser of 2023 or newer, and a server.");
 
 // Adds to what the page does with a message of the worker.
 export function on(type, act) {
@@ -185,13 +195,16 @@ canvas.addEventListener("blur", () => state.hand && openHand());
 // Time does not pass while nobody sees it.
 document.addEventListener("visibilitychange", () => ask("visible", { on: !document.hidden }));
 
-// The canvas is drawn by the worker; its size follows the window.
-export function open(settings) {
+// The canvas is drawn by the worker; its size follows the window. Settings that are refused give way to `plain` ones.
+export function open(settings, plain) {
+  if (typeof WebAssembly !== "object") return stop("This browser has no WebAssembly, without which the program does not run.");
+  if (!canvas.transferControlToOffscreen) return stop("This browser draws in no worker: one of 2023 or newer does.");
+  find("progress").textContent = "Loading the program";
   const { width, height } = size();
   const offscreen = canvas.transferControlToOffscreen();
   // `?backend=cpu` and `?backend=gpu` choose in place of the page.
   const backend = new URLSearchParams(location.search).get("backend");
-  ask("open", { canvas: offscreen, settings, width, height, backend }, [offscreen]);
+  ask("open", { canvas: offscreen, settings, plain, width, height, backend }, [offscreen]);
   let resized;
   new ResizeObserver(() => {
     clearTimeout(resized);

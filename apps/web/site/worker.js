@@ -28,6 +28,8 @@ let engine;
 let device;
 let drawn;
 let why;
+// What the browser tells of the GPU.
+let name = "";
 let canvas;
 let context;
 let small;
@@ -58,6 +60,7 @@ async function choose(wanted) {
   const adapter = await navigator.gpu.requestAdapter().catch(() => null);
   if (!adapter) return "WebGPU has no adapter here";
   if (wanted !== "gpu" && adapter.info?.isFallbackAdapter) return "WebGPU runs on the processor here";
+  name = [adapter.info?.vendor, adapter.info?.architecture].filter(Boolean).join(" ");
   tell("progress", { text: "Asking for the GPU" });
   drawn = new OffscreenCanvas(16, 16);
   try {
@@ -198,7 +201,7 @@ function tick(now) {
     if (now - told > 500 || still) {
       told = now;
       tell("figures", {
-        rate: 1e3 / smooth.between, picture: smooth.picture, step: smooth.step, still, paused, gpu: Boolean(device), why,
+        rate: 1e3 / smooth.between, picture: smooth.picture, step: smooth.step, still, paused, gpu: Boolean(device), name, why,
         strands: engine.strand_count(), width: engine.width, height: engine.height,
       });
     }
@@ -215,7 +218,7 @@ function fail(error) {
     engine = undefined;
     tell("gone", { message: String(error.message) });
   } else {
-    tell("refused", { message: String(error.message ?? error) });
+    tell(engine ? "refused" : "unable", { message: String(error.message ?? error) });
   }
 }
 
@@ -253,7 +256,7 @@ async function warm(wanted) {
 }
 
 const acts = {
-  async open({ canvas: given, settings, width, height, backend }) {
+  async open({ canvas: given, settings, plain, width, height, backend }) {
     canvas = given;
     context = canvas.getContext("2d", { alpha: false });
     [canvas.width, canvas.height] = [width, height];
@@ -266,7 +269,7 @@ const acts = {
       engine = grow(keys, values, width, height);
     } catch (error) {
       tell("refused", { message: String(error.message) });
-      engine = grow([], [], width, height);
+      engine = grow(plain.map(([key]) => key), plain.map(([, value]) => value), width, height);
     }
     if (keys.includes("style.strand_count")) trial = false;
     if (device) await warm(backend);

@@ -1,11 +1,11 @@
 // Opens the page in Chromium without a screen and uses it: node browser.mjs FOLDER CHROMIUM ADDRESS [PICTURES].
-// With a folder for PICTURES the page is kept as it looks.
+// With a folder for PICTURES the poster is kept as it looks.
 
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 
-import { attach, folder, held, look, mouse, opens, pause, pictures, problems, run, send, shut, until, value } from "./driver.mjs";
+import { attach, begins, folder, held, hold, look, mouse, opens, pause, problems, run, send, shut, until, value } from "./driver.mjs";
 
 // Mean difference of the canvas from a picture of the module in Node, of 255.
 async function difference(bytes, width, height) {
@@ -21,10 +21,71 @@ async function difference(bytes, width, height) {
   })()`);
 }
 
+// A picture of the stage as it looks now, without its words.
+async function stage() {
+  await value("document.querySelectorAll('.stage p').forEach((words) => { words.style.visibility = 'hidden'; })");
+  const clip = await value("(({ x, y, width, height }) => ({ x, y, width, height, scale: 0.25 }))(document.getElementById('hair').getBoundingClientRect())");
+  const { data } = await send("Page.captureScreenshot", { format: "png", clip });
+  await value("document.querySelectorAll('.stage p').forEach((words) => { words.style.visibility = ''; })");
+  return data;
+}
+
+// Mean difference of two pictures of the stage, of 255.
+const apart = (one, other) => value(`(async () => {
+  const bytes = await Promise.all(["${one}", "${other}"].map(async (data) => {
+    const blob = new Blob([Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0))]);
+    const bitmap = await createImageBitmap(blob);
+    const own = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+    own.drawImage(bitmap, 0, 0);
+    return own.getImageData(0, 0, bitmap.width, bitmap.height).data;
+  }));
+  return bytes[0].reduce((sum, byte, index) => sum + Math.abs(byte - bytes[1][index]), 0) / bytes[0].length;
+})()`);
+
+// The poster, which shows while the module loads, gives way to hair that looks the same, and stays where nothing runs.
+async function poster() {
+  const release = hold("strandline_web_bg.wasm");
+  await begins("");
+  await until("document.getElementById('poster').complete && document.getElementById('poster').naturalWidth > 0");
+  await until("document.getElementById('progress').textContent.includes('Loading')");
+  held(await value("getComputedStyle(document.getElementById('poster')).opacity === '1'"), "a poster shows while the module loads");
+  await look("poster");
+  const still = await stage();
+  release();
+  await until("document.getElementById('progress').hidden");
+  await value("document.getElementById('pause').click()");
+  await until("seen.figures?.still");
+  await until("getComputedStyle(document.getElementById('poster')).visibility === 'hidden'");
+  const live = await stage();
+  await value("document.querySelector('[value=pixie]').click()");
+  await until("seen.given.join().includes('pixie')");
+  await value("seen.figures = undefined");
+  await until("seen.figures?.still");
+  await pause(300);
+  const [jump, other] = [await apart(still, live), await apart(still, await stage())];
+  console.log(`the first pictures: ${jump.toFixed(2)} of 255 from the poster, other hair ${other.toFixed(2)}`);
+  held(jump < 3 && other > 2 * jump, "hair takes the place of the poster without a jump");
+  await opens("#style.style=bob&style.strand_count=64");
+  held(await value("document.getElementById('poster').hidden"), "a link shows no poster of other hair");
+
+  const { identifier } = await send("Page.addScriptToEvaluateOnNewDocument", { source: "delete globalThis.WebAssembly" });
+  for (const file of ["", "how.html"]) {
+    await begins("#style.style=bob", file);
+    await until("!document.getElementById('problem').hidden && document.getElementById('problem').textContent.includes('WebAssembly')");
+    await until("!document.getElementById('poster').hidden && document.getElementById('poster').naturalWidth > 0");
+  }
+  await look("unable");
+  await send("Page.removeScriptToEvaluateOnNewDocument", { identifier });
+  held(true, "a browser without WebAssembly shows the poster, and says so");
+}
+
 async function test() {
   const target = await attach();
   const size = (width, height) =>
     send("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: width < 500 });
+
+  await size(900, 600);
+  await poster();
 
   // A small canvas: a quarter of the window is the panel's.
   await size(480, 640);
@@ -61,7 +122,6 @@ async function test() {
     await pause(60);
   }
   await until("seen.figures.still === false");
-  await look("grab");
   await mouse("mouseReleased", ...at(0.85, 0.2));
   held(true, "hair is grabbed and pulled");
   await until("seen.figures.still");
@@ -86,6 +146,18 @@ async function test() {
   await value("document.querySelector('[value=red]').click()");
   await until("location.hash.includes('look.preset=red')");
   held(true, "the link carries a colour");
+
+  // A device that is tilted turns the head.
+  await send("Emulation.setTouchEmulationEnabled", { enabled: true, maxTouchPoints: 1 });
+  await opens("#style.style=bob&style.strand_count=64");
+  await send("DeviceOrientation.setDeviceOrientationOverride", { alpha: 0, beta: 40, gamma: 0 });
+  await value("document.getElementById('tilt').click()");
+  await pause(300);
+  await send("DeviceOrientation.setDeviceOrientationOverride", { alpha: 0, beta: 50, gamma: -20 });
+  await until("decodeURIComponent(location.hash).includes('motion.rotation=[10.0,+-20.0,+0]')");
+  held(await value("!document.getElementById('tilt').hidden"), "a device that is tilted turns the head");
+  await send("DeviceOrientation.clearDeviceOrientationOverride");
+  await send("Emulation.setTouchEmulationEnabled", { enabled: false });
 
   // Files.
   const drop = (name, content) => value(`(() => {
@@ -126,8 +198,6 @@ async function test() {
   await until("seen.given.join().includes('simulation.volume.enabled,true')");
   await until("seen.figures?.strands === 240");
   held((await value("document.getElementById('next').disabled && seen.refused.join()")) === "", "each stage is switched on");
-  await look("how");
-
   // Without a network.
   await value("navigator.serviceWorker.ready.then(() => true)");
   shut(true);
@@ -145,19 +215,6 @@ async function test() {
   await until("seen.refused.some((text) => text.includes('style.stile'))");
   held(true, "a wrong link is refused by its key, and the page opens");
 
-  if (pictures) {
-    await size(1200, 800);
-    await opens("#style.style=wavy&look.preset=red");
-    await pause(6000);
-    await look("desktop");
-    await value("document.getElementById('pause').click()");
-    await until("seen.figures.still");
-    await look("still");
-    await size(390, 844);
-    await opens("#style.style=curly");
-    await pause(6000);
-    await look("phone");
-  }
   held(problems.length === 0, `nothing on the console: ${problems.join("; ")}`);
 }
 

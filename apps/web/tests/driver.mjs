@@ -15,8 +15,12 @@ const PATIENCE = 60_000 * SLOWNESS;
 
 // The server behind a gate: while it is shut there is no network.
 let isShut = false;
-const gate = createServer((request, response) => {
+// A file that is on its way until it is let through, and what lets it.
+let delayed;
+let through;
+const gate = createServer(async (request, response) => {
   if (isShut) return request.socket.destroy();
+  if (delayed && request.url.includes(delayed)) await through;
   get(server + request.url.slice(1), (answer) => {
     response.writeHead(answer.statusCode, answer.headers);
     answer.pipe(response);
@@ -28,6 +32,17 @@ const address = `http://127.0.0.1:${gate.address().port}/`;
 export const shut = (on) => {
   isShut = on;
   if (on) gate.closeAllConnections();
+};
+
+// Holds a file back; the result lets it through.
+export const hold = (file) => {
+  let release;
+  delayed = file;
+  through = new Promise((resolve) => { release = resolve; });
+  return () => {
+    delayed = undefined;
+    release();
+  };
 };
 
 const profile = mkdtempSync(join(tmpdir(), "strandline-web-"));
@@ -123,11 +138,14 @@ export async function look(name) {
   const { data } = await send("Page.captureScreenshot", { format: "png" });
   writeFileSync(join(pictures, `${name}.png`), Buffer.from(data, "base64"));
 }
-export async function opens(hash, file = "") {
-  const begin = Date.now();
+export async function begins(hash, file = "") {
   await send("Page.navigate", { url: "about:blank" });
   await send("Page.navigate", { url: `${address}${file}${hash}` });
   await pause(100);
+}
+export async function opens(hash, file = "") {
+  const begin = Date.now();
+  await begins(hash, file);
   await until("document.getElementById('progress').hidden");
   return (Date.now() - begin) / 1e3;
 }

@@ -77,12 +77,19 @@ async function test() {
   write("device.ppm", shown.bytes);
   write("processor.ppm", [...engine.picture()]);
 
-  // In the page: a hand, and the device lost.
-  const hash = `#${new URLSearchParams([...SCENE, ["motion.name", "still"]])}`;
+  // In the page: shorter hair on a head that is turned from the beginning, a turn too fast to follow, a hand, and the device
+  // lost. Nothing of it may wait for the device.
+  const turned = [["motion.name", "still"], ["groom.length", "0.8"], ["motion.rotation", "[0, 40, 0]"]];
+  const hash = `#${new URLSearchParams([...SCENE, ...turned])}`;
   await opens(hash, "?backend=gpu");
   await until("seen.device === 'gpu' && seen.figures?.gpu");
   await look("gpu");
   held(await value("document.getElementById('figures').textContent.includes('GPU')"), "the page moves and draws on the device");
+  await value("import('./stage.js').then(({ set }) => set('motion.rotation', '[0, -40, 0]'))");
+  await until("seen.given.join().includes('[0, -40, 0]')");
+  await value("seen.figures = undefined");
+  await until("seen.figures?.rate > 0");
+  held(await value("seen.figures.gpu && seen.refused.length === 0"), "hair on the device is carried over a jump of the head");
   const box = await value("(({ x, y, width, height }) => ({ x, y, width, height }))(document.getElementById('hair').getBoundingClientRect())");
   const at = (x, y) => [box.x + x * box.width, box.y + y * box.height];
   // Wherever guides of so few lie.

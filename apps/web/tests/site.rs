@@ -2,7 +2,11 @@
 
 #![allow(clippy::disallowed_methods)] // what is held to others may be rounded
 
-use std::{collections::BTreeMap, fs, path::Path};
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+};
 
 use glam::Vec3;
 use strandline::Picture;
@@ -14,8 +18,12 @@ const FRAMES: usize = 40;
 
 type Settings = Vec<(String, String)>;
 
+fn path(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("site").join(name)
+}
+
 fn file(name: &str) -> String {
-    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("site").join(name)).unwrap()
+    fs::read_to_string(path(name)).unwrap()
 }
 
 /// Values of an attribute, in their order.
@@ -98,6 +106,35 @@ fn each_switch_shows_its_stage_and_takes_it_back() {
     assert_eq!(seen.len(), 8, "{seen:?}");
 }
 
+/// Beside a poster that is narrower than the window lies the background of the pictures.
+#[test]
+fn the_stage_has_the_background_of_the_pictures() {
+    let few = [("style.strand_count", "8"), ("groom.bound", "0")];
+    let few = few.map(|(key, value)| (key.to_owned(), value.to_owned()));
+    let picture = Page::open(few.to_vec(), SIZE).unwrap().picture(None).unwrap();
+    let css = file("style.css");
+    let gradient = css.split_once("linear-gradient(").unwrap().1.split_once(");").unwrap().0;
+    let stops: Vec<Vec<i32>> = gradient
+        .split("rgb(")
+        .skip(1)
+        .map(|color| color.split_once(')').unwrap().0.split(", ").map(|part| part.parse().unwrap()).collect())
+        .collect();
+    assert_eq!(stops.len(), 5, "{gradient}");
+    let last = picture.height as usize - 1;
+    for (index, stop) in stops.iter().enumerate() {
+        let row = index * last / 4;
+        let shown = &picture.pixels[3 * picture.width as usize * row..][..3];
+        let apart = shown.iter().zip(stop).map(|(one, other)| (i32::from(*one) - other).abs()).max();
+        assert!(apart.unwrap() <= 2, "row {row}: {shown:?}, {stop:?}");
+    }
+}
+
+#[test]
+fn the_poster_is_small() {
+    let bytes = fs::read(path("poster.webp")).unwrap();
+    assert!(bytes.len() <= 60_000 && bytes.starts_with(b"RIFF"), "{} bytes", bytes.len());
+}
+
 /// Scripts and styles are files of the page, so that its content policy can forbid all others.
 #[test]
 fn no_page_has_a_script_or_a_style_of_its_own() {
@@ -118,7 +155,7 @@ fn no_page_has_a_script_or_a_style_of_its_own() {
         });
         assert_eq!(handlers.count(), 0, "{name}");
         for link in attributes(&html, "href").into_iter().chain(attributes(&html, "src")) {
-            assert!(!link.contains("//") && !file(&link).is_empty(), "{name}: {link}");
+            assert!(!link.contains("//") && fs::metadata(path(&link)).unwrap().len() > 0, "{name}: {link}");
         }
     }
 }

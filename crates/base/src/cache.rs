@@ -3,6 +3,8 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+use crate::plain_file::HAS_FILES;
+
 /// The environment's variable that names the folder; `off` keeps nothing.
 pub const VARIABLE: &str = "STRANDLINE_CACHE";
 
@@ -12,7 +14,7 @@ pub const VARIABLE: &str = "STRANDLINE_CACHE";
 /// `LOCALAPPDATA` or `.cache` in `HOME`, whichever the system sets. A variable that is no whole path is passed
 /// over, so that nothing is left in the folder of the day.
 pub fn folder() -> Option<PathBuf> {
-    found(|name| std::env::var_os(name))
+    if HAS_FILES { found(|name| std::env::var_os(name)) } else { None }
 }
 
 fn found(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {

@@ -3,6 +3,7 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{Error, ErrorKind, Result, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use crate::plain_file::HAS_FILES;
 use crate::temporary::{self, Writer};
 use crate::whole_file::permissions;
 
@@ -41,6 +42,9 @@ impl GrowingFile {
     /// `ResourceBusy`: another run writes it. Otherwise an error of the system; a name under which a file may
     /// not be put.
     pub fn create(path: &Path) -> Result<Self> {
+        if !HAS_FILES {
+            return Err(ErrorKind::Unsupported.into());
+        }
         let former = permissions(path)?;
         for path in [path, &unfinished(path)] {
             refuse_busy(path)?;

@@ -22,6 +22,7 @@ mod printable;
 pub mod random;
 pub mod real;
 mod setting;
+mod setting_fields;
 mod setting_macro;
 mod setting_values;
 mod stopwatch;
@@ -41,6 +42,7 @@ pub use random::Random;
 pub use setting::{
     Group, Items, Key, Kind, Overrides, Row, SettingError, Table, Value, Word, number, plain_name,
 };
+pub use setting_fields::FieldName;
 pub use stopwatch::{Stopwatch, timed};
 pub use temporary::{Abandoned, abandon_unfinished};
 pub use text::{counted, utf8_text, whole_lines};

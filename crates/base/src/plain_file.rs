@@ -2,6 +2,9 @@ use std::fs::{self, File, Metadata};
 use std::io::{Error, ErrorKind, Read, Result, Take};
 use std::path::Path;
 
+/// False in a browser page, whose module then leaves out what reads and writes files.
+pub(crate) const HAS_FILES: bool = cfg!(not(target_family = "wasm"));
+
 /// Opens a plain file of `limit` bytes at most, links followed. No more than `limit` + 1 bytes can be read.
 ///
 /// The type of the file is checked before it is opened: opening a pipe waits for a writer, and opening a device can
@@ -11,6 +14,9 @@ use std::path::Path;
 /// # Errors
 /// Errors of the system; anything but a plain file; a file that is too large.
 pub fn open_plain(path: &Path, limit: u64) -> Result<Take<File>> {
+    if !HAS_FILES {
+        return Err(ErrorKind::Unsupported.into());
+    }
     check(&fs::metadata(path)?, limit)?;
     let file = File::open(path)?;
     check(&file.metadata()?, limit)?;
@@ -22,6 +28,9 @@ pub fn open_plain(path: &Path, limit: u64) -> Result<Take<File>> {
 /// # Errors
 /// As [`open_plain`]; no memory for it.
 pub fn read_plain(path: &Path, limit: u64) -> Result<Vec<u8>> {
+    if !HAS_FILES {
+        return Err(ErrorKind::Unsupported.into());
+    }
     let mut file = open_plain(path, limit)?;
     let length = usize::try_from(file.get_ref().metadata()?.len()).map_err(|_| ErrorKind::FileTooLarge)?;
     let mut bytes = Vec::new();

@@ -87,13 +87,45 @@ macro_rules! settings {
         const _: () = {
             /// The settings that a file gives.
             #[allow(missing_docs)]
-            #[derive(Clone, Default, ::serde::Deserialize)]
-            #[serde(deny_unknown_fields, default, expecting = "a section of settings")]
+            #[derive(Clone, Default)]
             pub struct Given {
                 $(pub $field: Option<<$Type as $crate::Value>::Given>,)*
                 $($(pub $share: Option<<$Share as $crate::Value>::Given>,)*)*
                 $($(pub $over: Option<$Over>,)*)*
                 $($(pub $moved: Option<$Moved>,)*)?
+            }
+
+            const FIELDS: &[&str] = &[
+                $($crate::plain_name(stringify!($field)),)*
+                $($($crate::plain_name(stringify!($share)),)*)*
+                $($($crate::plain_name(stringify!($over)),)*)*
+                $($($crate::plain_name(stringify!($moved)),)*)?
+            ];
+            struct Fields;
+            impl<'de> ::serde::de::Visitor<'de> for Fields {
+                type Value = Given;
+                fn expecting(&self, to: &mut ::std::fmt::Formatter<'_>) -> ::std::fmt::Result {
+                    to.write_str("a section of settings")
+                }
+
+                #[allow(unused_assignments, unused_mut, unused_variables)]
+                fn visit_map<A: ::serde::de::MapAccess<'de>>(self, mut map: A) -> Result<Given, A::Error> {
+                    let mut given = Given::default();
+                    while let Some(found) = map.next_key_seed($crate::FieldName(FIELDS))? {
+                        let mut place = 0;
+                        $($crate::settings!(@give given.$field, map, found, place);)*
+                        $($($crate::settings!(@give given.$share, map, found, place);)*)*
+                        $($($crate::settings!(@give given.$over, map, found, place);)*)*
+                        $($($crate::settings!(@give given.$moved, map, found, place);)*)?
+                    }
+                    Ok(given)
+                }
+            }
+
+            impl<'de> ::serde::Deserialize<'de> for Given {
+                fn deserialize<D: ::serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                    deserializer.deserialize_struct("Given", FIELDS, Fields)
+                }
             }
 
             /// The row of each setting.
@@ -227,6 +259,13 @@ macro_rules! settings {
                 }
             }
         };
+    };
+    (@give $given:ident.$field:ident, $map:ident, $found:ident, $place:ident) => {
+        if $found == $place {
+            $given.$field = $map.next_value()?;
+            continue;
+        }
+        $place += 1;
     };
     (@ends) => { None };
     (@ends $least:expr, $most:expr) => { Some([$least as f64, $most as f64]) };

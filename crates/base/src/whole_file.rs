@@ -2,6 +2,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Error, ErrorKind, Result, Write};
 use std::path::{Path, PathBuf};
 
+use crate::plain_file::HAS_FILES;
 use crate::temporary::{self, Writer};
 
 /// A file that is whole or not there: it is written under a temporary name in the same folder and gets its own
@@ -50,6 +51,9 @@ impl WholeFile {
     }
 
     fn begin(path: &Path, writer: Writer) -> Result<Self> {
+        if !HAS_FILES {
+            return Err(ErrorKind::Unsupported.into());
+        }
         permissions(path)?;
         let (temporary, file) = temporary::create(path, writer)?;
         Ok(Self { path: path.to_owned(), temporary, file: Some(BufWriter::new(file)) })

@@ -125,13 +125,15 @@ impl Simulator {
     /// The state. A device is waited for, unless nothing happened since it was last read.
     ///
     /// # Errors
-    /// The device was lost.
+    /// The device was lost; it would have to be waited for, and the host never waits.
     pub fn state(&mut self) -> Result<&State, SimError> {
         if self.journal.is_current() {
             return Ok(self.journal.state());
         }
         self.find()?;
         if let Runner::Gpu(runner) = &mut self.runner {
+            // Refused here also where the copy would arrive at once.
+            runner.gpu().check_wait("the state of the hair")?;
             let coming = runner.begin_read()?;
             // Steps before the state are not computed again: their reports are kept.
             self.reports.keep(runner.reports()?);

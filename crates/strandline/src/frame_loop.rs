@@ -7,7 +7,7 @@ use glam::Vec3;
 use crate::{
     Change, Devices, Error, Event, Prepared, Scene,
     body::Aabb,
-    gpu::Gpu,
+    gpu::{Gpu, GpuError},
     prepare::center,
     render::{Camera, FrameReport, Light, Look, Picture},
     session::{AskedPoints, Draft, Inline, Session},
@@ -18,8 +18,9 @@ use crate::{
 ///
 /// On the CPU every change takes place at once. On a GPU a change that reads hair (a grab, a reset, another strand solver) is
 /// a request: the hair stands still until it has arrived, a frame or two, while pictures go on, and the changes of the motion
-/// that come after it follow it. [`FrameLoop::points`] and [`FrameLoop::picture`] alone wait for a GPU; where the host has
-/// called [`Gpu::never_wait`] they are errors, and [`FrameLoop::arrived_points`] and `FrameLoop::draw_to` stand in for them.
+/// that come after it follow it. [`FrameLoop::points`] and [`FrameLoop::picture`] alone wait for a GPU, and a frame in which
+/// the body jumps; where the host has called [`Gpu::never_wait`] the first two are errors, in place of which
+/// [`FrameLoop::arrived_points`] and `FrameLoop::draw_to` stand, and hair stands still before a jump until it has been read.
 ///
 /// ```
 /// use strandline::{Backend, Change, FrameLoop, Prepared, Ray, Scene};
@@ -43,6 +44,8 @@ pub struct FrameLoop {
     /// Changes that wait for what they read, in their order.
     asked: VecDeque<Change>,
     asked_points: Option<AskedPoints>,
+    /// True where the next frame waits for the state of the hair: the body jumps in it.
+    needs_state: bool,
 }
 
 impl FrameLoop {
@@ -63,11 +66,12 @@ impl FrameLoop {
     }
 
     fn of(session: Session<Inline>) -> Self {
-        Self { session, asked: VecDeque::new(), asked_points: None }
+        Self { session, asked: VecDeque::new(), asked_points: None, needs_state: false }
     }
 
     /// Lets a sixtieth of a second pass, or less where the steps are so short that it would take many. Returns false where
-    /// no time has passed: a change waits for what it reads, or the GPU is some frames behind.
+    /// no time has passed: a change waits for what it reads, hair for being carried over a jump of the body, or the GPU is some
+    /// frames behind.
     ///
     /// # Errors
     /// A change that has waited is refused; the GPU failed, and falling back to the CPU is not allowed.
@@ -75,9 +79,20 @@ impl FrameLoop {
         if !self.make_changes()? || self.session.is_behind()? {
             return Ok(false);
         }
+        if self.needs_state && !self.session.has_state()? {
+            return Ok(false);
+        }
+        let has_asked = std::mem::take(&mut self.needs_state);
         self.session.start_frame(0)?;
-        self.take()?;
-        Ok(true)
+        let passed = self.take();
+        let would_wait =
+            passed.as_ref().is_err_and(|error| matches!(error.gpu(), Some(GpuError::WouldWait { .. })));
+        if would_wait && !has_asked {
+            self.needs_state = true;
+            self.session.has_state()?;
+            return Ok(false);
+        }
+        passed.map(|()| true)
     }
 
     /// Makes a change at once, or as soon as what it reads has arrived from a GPU.
@@ -162,7 +177,7 @@ impl FrameLoop {
     /// # Errors
     /// The pictures take more memory than there is.
     pub fn fall_back_after(&mut self, failure: &str) -> Result<(), Error> {
-        self.asked_points = None;
+        (self.asked_points, self.needs_state) = (None, false);
         self.session.fall_back_after(failure)
     }
 

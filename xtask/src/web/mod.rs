@@ -13,6 +13,7 @@ use folders::site;
 pub struct Wish {
     pub setup: bool,
     pub test: bool,
+    pub pictures: bool,
     pub serve: bool,
 }
 
@@ -24,6 +25,7 @@ impl Wish {
             match *word {
                 "--setup" => wish.setup = true,
                 "--test" => wish.test = true,
+                "--pictures" => wish.pictures = true,
                 "--serve" => wish.serve = true,
                 _ => return None,
             }
@@ -32,14 +34,15 @@ impl Wish {
     }
 }
 
-/// Builds the page into out/web; tests and serves it where that is wished for.
+/// Builds the page into out/web; draws its pictures, tests and serves it where that is wished for.
 pub fn web(wish: Wish) -> bool {
     let built = toolchain::compiler(wish.setup).and_then(|compiler| build::page(&compiler));
     if let Err(error) = built {
         println!("the page is not built: {error:#}");
         return false;
     }
-    let passed = !wish.test || tests::test(wish.setup);
+    let drawn = !wish.pictures || tests::pictures(wish.setup);
+    let passed = drawn && (!wish.test || tests::test(wish.setup));
     if wish.serve
         && let Err(error) = server::serve_until_stopped(&site())
     {
@@ -51,7 +54,7 @@ pub fn web(wish: Wish) -> bool {
 
 /// Builds and tests the page, with what is missing installed.
 pub fn long() -> bool {
-    web(Wish { setup: true, test: true, serve: false })
+    web(Wish { setup: true, test: true, ..Wish::default() })
 }
 
 #[cfg(test)]
@@ -61,8 +64,8 @@ mod unit_tests {
     #[test]
     fn words_are_wishes_in_any_order_and_others_are_refused() {
         assert_eq!(Wish::parse(&[]), Some(Wish::default()));
-        let all = Wish { setup: true, test: true, serve: true };
-        assert_eq!(Wish::parse(&["--serve", "--test", "--setup"]), Some(all));
+        let all = Wish { setup: true, test: true, pictures: true, serve: true };
+        assert_eq!(Wish::parse(&["--serve", "--test", "--pictures", "--setup"]), Some(all));
         assert_eq!(Wish::parse(&["--tests"]), None);
     }
 }

@@ -13,12 +13,13 @@ const PORT: u16 = 8040;
 const LONGEST: u64 = 4096;
 
 /// Kinds of files by their endings.
-const KINDS: [(&str, &str); 6] = [
+const KINDS: [(&str, &str); 7] = [
     ("html", "text/html; charset=utf-8"),
     ("css", "text/css; charset=utf-8"),
     ("js", "text/javascript; charset=utf-8"),
     ("wasm", "application/wasm"),
     ("svg", "image/svg+xml"),
+    ("webp", "image/webp"),
     ("webmanifest", "application/manifest+json"),
 ];
 

@@ -17,6 +17,24 @@ const NO_ADAPTER: i32 = 3;
 /// Largest mean FLIP of the device's picture from the processor's: samples at edges fall to either side.
 const MOST_FLIP: &str = "0.02";
 
+/// Draws the poster of the page, and the pictures of it in docs/web.md, anew.
+pub fn pictures(setup: bool) -> bool {
+    println!("\n== pictures of the page");
+    let Some(chromium) = chromium(setup).filter(|_| is_there("node")) else {
+        println!("no pictures without Chromium and Node");
+        return false;
+    };
+    let folder = root().join("docs/web");
+    let address = server::serve_beside(&site());
+    let (Ok(address), Ok(())) = (address, fs::create_dir_all(&folder)) else {
+        println!("the page is not served, or there is no folder {}", folder.display());
+        return false;
+    };
+    let poster = root().join("apps/web/site/poster.webp");
+    let drawn = node("pictures.mjs").args([chromium, &address]).arg(&folder).arg(&poster).status();
+    drawn.is_ok_and(|status| status.success())
+}
+
 /// Tests the page; prints what was not tested. `setup` installs Debian's Chromium where there is none.
 pub fn test(setup: bool) -> bool {
     if !is_there("node") {

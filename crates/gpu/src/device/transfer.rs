@@ -38,6 +38,16 @@ impl Transfer {
         self.staging.as_ref().map_or(Ok(true), |(_, mapping)| mapping.is_there(&self.held.gpu))
     }
 
+    /// The copied bytes if they have arrived, else waits for them: see [`Transfer::wait`].
+    ///
+    /// # Errors
+    /// As there; a copy that was seen to have arrived is not waited for.
+    pub fn take(self) -> Result<Copied, GpuError> {
+        let seen = self.staging.as_ref().is_none_or(|(_, mapping)| mapping.was_seen());
+        let arrived = if seen { self.try_take()? } else { None };
+        arrived.map_or_else(|| self.wait(), Ok)
+    }
+
     /// The copied bytes, if they have arrived; never waits.
     ///
     /// # Errors
@@ -54,8 +64,10 @@ impl Transfer {
     /// Waits until it arrives, and not for later submissions.
     ///
     /// # Errors
-    /// The device was lost or does not answer.
+    /// The device was lost or does not answer. The host never waits, also where the copy has arrived just now: a refusal is no
+    /// matter of luck.
     pub fn wait(mut self) -> Result<Copied, GpuError> {
+        self.held.gpu.check_wait("a copy back")?;
         if let Some((_, mapping)) = &mut self.staging {
             mapping.wait(&self.held.gpu)?;
         }
@@ -145,6 +157,11 @@ impl Mapping {
             arrived.arrived.notify_all();
         });
         Self { submission, arrival }
+    }
+
+    /// True if an earlier look found it readable.
+    fn was_seen(&self) -> bool {
+        matches!(self.arrival.lock().mapped, Some(Ok(())))
     }
 
     /// True if it is readable by now.

@@ -36,7 +36,7 @@ impl ComingPoints {
     /// # Errors
     /// The device was lost.
     pub fn write(self, share: f32, positions: &mut Vec<Vec3Lanes>) -> Result<(), GpuError> {
-        let copied = self.transfer.wait()?;
+        let copied = self.transfer.take()?;
         let [before, after] = self.slots.map(|slot| {
             let numbers = copied.take(slot);
             let count = numbers.len() * size_of::<f32>() / size_of::<Vec3Lanes>();

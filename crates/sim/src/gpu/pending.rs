@@ -83,6 +83,9 @@ impl Pending {
     /// Waits for all reports.
     pub fn drain(&mut self, gpu: &Gpu, reports: &Buffer<Report>) -> Result<Vec<Reported>, GpuError> {
         self.send(gpu, reports)?;
+        if !self.on_way.is_empty() {
+            gpu.check_wait("reports")?;
+        }
         let mut found = Vec::new();
         while let Some(first) = self.on_way.pop_front() {
             found.extend(self.take(first)?);
@@ -96,10 +99,10 @@ impl Pending {
         self.on_way.clear();
     }
 
-    /// Waits for reports. Without timestamps a step took at most the time until its report was there.
+    /// Waits for reports that have not arrived. Without timestamps a step took at most the time until its report was there.
     fn take(&self, on_way: OnWay) -> Result<Vec<Reported>, GpuError> {
         let OnWay { transfer, reports, marks, count, stages, watch } = on_way;
-        let copied = transfer.wait()?;
+        let copied = transfer.take()?;
         let (reports, marks, stride) = (copied.take(reports), copied.take(marks), self.stride());
         let until_here = watch.seconds() / count as f64;
         let seconds = |slot: usize| match &self.timer {

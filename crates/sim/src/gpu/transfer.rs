@@ -148,7 +148,7 @@ impl ComingState {
     /// # Errors
     /// The device was lost; the state is then as it was.
     pub fn write(self, state: &mut State) -> Result<(), SimError> {
-        self.content.write(&self.transfer.wait()?, state);
+        self.content.write(&self.transfer.take()?, state);
         Ok(())
     }
 }

@@ -52,6 +52,15 @@ impl Session<Inline> {
         })
     }
 
+    /// True where the state of the hair is on the host. Else it is asked for, and a later call finds it, unless a frame is
+    /// started between the two.
+    ///
+    /// # Errors
+    /// The GPU failed.
+    pub fn has_state(&mut self) -> Result<bool, Error> {
+        Ok(self.executor.simulation_mut().engine.has_state()?)
+    }
+
     /// Goes on on the CPU after a failure of the device, with the hair as it is.
     ///
     /// # Errors

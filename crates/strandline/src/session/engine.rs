@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use glam::Vec3;
-use strandline_gpu::{Buffer, Gpu};
+use strandline_gpu::{Buffer, Gpu, GpuError};
 
 use crate::{
     body::BodyFrame,
@@ -189,6 +189,12 @@ impl Engine {
         self.guarded(Simulator::release)
     }
 
+    /// Scales the length of every strand of hair that has not moved yet: on the host, so that what follows reads nothing from
+    /// a device.
+    pub fn begin_with_lengths(&mut self, scales: &[f32]) -> Result<(), SimError> {
+        self.guarded(|simulator| simulator.change(|state, model| state.set_length_scale(model, scales)))
+    }
+
     /// Scales the length of every strand.
     pub fn set_length_scale(&mut self, scales: &[f32]) -> Result<(), SimError> {
         self.guarded(|simulator| simulator.set_length_scale(scales))
@@ -197,7 +203,9 @@ impl Engine {
     /// Does something; where the device fails, and it is allowed, again on the CPU.
     fn guarded<T>(&mut self, act: impl Fn(&mut Simulator) -> Result<T, SimError>) -> Result<T, SimError> {
         match act(&mut self.simulator) {
-            Err(failure) if self.fall_back && failure.gpu().is_some() && self.gpu().is_some() => {
+            Err(failure)
+                if self.fall_back && failure.gpu().is_some_and(is_failure) && self.gpu().is_some() =>
+            {
                 self.simulator.fall_back();
                 self.note(&failure);
                 act(&mut self.simulator)
@@ -218,6 +226,11 @@ impl Engine {
         let time = self.simulator.time();
         self.notes.push(format!("falling back to the CPU, resuming from {time:.3} s: {failure}"));
     }
+}
+
+/// True but for a wait that the host refuses, which asks in its place and keeps the device.
+fn is_failure(error: &GpuError) -> bool {
+    !matches!(error, GpuError::WouldWait { .. })
 }
 
 /// Strands at rest on a body, of the lengths that those of a state have.

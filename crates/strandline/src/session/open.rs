@@ -133,7 +133,7 @@ impl Session<Inline> {
         let simulation = session.executor.simulation_mut();
         (simulation.origin, simulation.hairs) = (origin, hairs);
         if scene.groom.length != 1.0 {
-            simulation.set_length_scale(&scales)?;
+            simulation.engine.begin_with_lengths(&scales)?;
         }
         // A head that is turned at first does not whip its hair there.
         let start = head.frame(scene.film.start);

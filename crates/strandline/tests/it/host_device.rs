@@ -3,9 +3,10 @@
 
 use glam::{Vec2, Vec3};
 use strandline::{
-    Backend, Change, Error, FrameLoop, Picture, Prepared, Ray, Scene,
+    Backend, Change, Error, Event, FrameLoop, Picture, Prepared, Ray, Scene,
     device::{Gpu, GpuError, wgpu},
     look::Preset,
+    scene::MotionName,
     settings::StrandMethod,
 };
 
@@ -28,6 +29,10 @@ fn gpu() -> Option<Gpu> {
 }
 
 fn prepared() -> Prepared {
+    Prepared::new(&scene()).unwrap()
+}
+
+fn scene() -> Scene {
     let mut scene = Scene::demo();
     (scene.style.strand_count, scene.groom.bound) = (32, Some(0));
     scene.body.spacing = 0.01;
@@ -36,7 +41,7 @@ fn prepared() -> Prepared {
     [scene.picture.width, scene.picture.height] = SIZE;
     // Light that is scattered many times takes a software adapter long.
     scene.look.dress(Preset::Thesis);
-    Prepared::new(&scene).unwrap()
+    scene
 }
 
 fn texture(gpu: &Gpu, [width, height]: [u32; 2]) -> wgpu::Texture {
@@ -200,6 +205,46 @@ fn a_host_that_never_waits_asks_instead() {
     assert!(hair.change(Change::Settings(settings.into())).is_err());
     hair.change(Change::Reset).unwrap();
     pass(&mut hair);
+    assert_eq!(gpu.waits(), waits, "nothing has waited");
+}
+
+/// Hair of another length on a head that is turned from the beginning is loaded without a read, and is carried over a jump of
+/// the head as soon as it has been read.
+#[test]
+fn a_host_that_never_waits_loads_any_hair_and_carries_it_over_a_jump() {
+    let Some(gpu) = gpu() else { return };
+    gpu.never_wait();
+    let waits = gpu.waits();
+    let begun = |turn: f32| {
+        let mut scene = scene();
+        scene.groom.length = 0.7;
+        scene.motion.rotation = Vec3::new(0.0, turn, 0.0);
+        scene.motion.name = MotionName::Still;
+        scene
+    };
+    let own = |scene: &Scene| FrameLoop::open(Prepared::new(scene).unwrap(), Backend::Cpu).unwrap();
+    let farthest =
+        |one: &[Vec3], other: &[Vec3]| one.iter().zip(other).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+    for turn in [0.0, 40.0] {
+        let scene = begun(turn);
+        let mut hair = FrameLoop::with_device(Prepared::new(&scene).unwrap(), &gpu).unwrap();
+        let apart = farthest(&points(&mut hair), own(&scene).points().unwrap());
+        assert!(apart < 1e-5, "{turn} degrees: {apart} m");
+        pass(&mut hair);
+        let before = points(&mut hair);
+        let mut motion = scene.motion.clone();
+        motion.rotation.y = turn - 80.0;
+        hair.change(Change::Motion(motion.into())).unwrap();
+        pass(&mut hair);
+        let notes: Vec<String> = std::iter::from_fn(|| hair.next_event())
+            .filter_map(|event| if let Event::Note(note) = event { Some(note) } else { None })
+            .collect();
+        assert!(notes.iter().any(|note| note.contains("the body jumps")), "{notes:?}");
+        assert!(notes.iter().all(|note| !note.contains("on the CPU")) && hair.gpu().is_some(), "{notes:?}");
+        let carried = points(&mut hair);
+        assert!(farthest(&before, &carried) > 0.05 && carried.iter().all(|point| point.is_finite()));
+        (0..3).for_each(|_| pass(&mut hair));
+    }
     assert_eq!(gpu.waits(), waits, "nothing has waited");
 }
 
