@@ -25,7 +25,7 @@ pub fn look(preset: Preset, ui: &Ui) -> Image<'static> {
 
 /// A picture of a row, which is decoded once.
 fn picture((name, row): (&'static str, &[u8]), index: usize, count: usize, ui: &Ui) -> Image<'static> {
-    let id = egui::Id::new(("thumbnails", name));
+    let id = egui::Id::unique(("thumbnails", name));
     let known = ui.data(|data| data.get_temp::<TextureHandle>(id));
     let texture = known.unwrap_or_else(|| {
         let made = ui.ctx().load_texture(name, decoded(row), TextureOptions::LINEAR);
