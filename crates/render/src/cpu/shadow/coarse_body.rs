@@ -130,8 +130,8 @@ mod tests {
             found(&shadows, &scattering)
         };
         let all = ShadowBody { positions: &mesh.positions, triangles: &mesh.triangles, cuts: None };
-        assert_eq!(coarse, of_body(few), "no other triangles cast shadows or reflect light");
-        assert_eq!(full, of_body(all));
+        assert!(coarse == of_body(few), "no other triangles cast shadows or reflect light");
+        assert!(full == of_body(all));
         assert!(coarse.0 != full.0 && coarse.1 != full.1);
         // They are as bright, but for what waves add to the area.
         for (few, all) in coarse.1.iter().zip(&full.1) {
