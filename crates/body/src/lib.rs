@@ -12,6 +12,7 @@ mod buried;
 mod bvh;
 mod caps;
 mod closing;
+mod coarse_mesh;
 mod collider;
 mod curve;
 mod distance;
@@ -72,6 +73,7 @@ mod vertex_motion;
 mod welding;
 
 pub use caps::Caps;
+pub use coarse_mesh::CoarseMesh;
 pub use collider::{Carrier, Collider, Shape};
 pub use curve::{Curve, Interpolation, Key};
 pub use distance::{Aabb, SignedDistance};

@@ -29,18 +29,19 @@ impl Mesh {
         match (self.skin_in(body), self.bend_in(body)) {
             (Some(skin), _) => Cow::Borrowed(skin),
             (None, Some(bend)) => {
-                let [positions, _] = bend.skin(&self.positions, &self.normals);
+                let mut positions = self.positions.clone();
+                bend.places(&mut positions);
                 Cow::Owned(positions)
             }
             (None, None) => Cow::Borrowed(&self.positions),
         }
     }
 
-    fn skin_in<'a>(&self, body: &'a BodyFrame) -> Option<&'a Arc<[Vec3]>> {
+    pub(crate) fn skin_in<'a>(&self, body: &'a BodyFrame) -> Option<&'a Arc<[Vec3]>> {
         body.skin().filter(|skin| skin.len() == self.positions.len())
     }
 
-    fn bend_in(&self, body: &BodyFrame) -> Option<Bend> {
+    pub(crate) fn bend_in(&self, body: &BodyFrame) -> Option<Bend> {
         self.neck.and_then(|neck| neck.bend(body))
     }
 }
@@ -61,7 +62,7 @@ impl MovedSkin {
         }
         (self.positions, self.bend) = (skin.cloned(), bend);
         if let Some(bend) = bend {
-            [self.bent, self.normals] = bend.skin(&mesh.positions, &mesh.normals);
+            bend.skin([&mesh.positions, &mesh.normals], &mut self.bent, &mut self.normals);
         }
         if let Some(skin) = skin {
             if self.welded.is_empty() {

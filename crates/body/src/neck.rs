@@ -110,16 +110,31 @@ impl Carry {
 }
 
 impl Bend {
-    /// Positions \[m\] and unit normals of the skin, from those at rest, head space.
-    pub fn skin(&self, positions: &[Vec3], normals: &[Vec3]) -> [Vec<Vec3>; 2] {
-        let table: Vec<Carry> = (0..=STEPS).map(|step| self.carry(step as f32 / STEPS as f32)).collect();
-        let mut skin = [positions.to_vec(), normals.to_vec()];
-        let [positions, normals] = &mut skin;
+    /// Fills positions \[m\] and unit normals of the skin, from those at rest, head space, into memory that is used again.
+    pub fn skin(&self, rest: [&[Vec3]; 2], positions: &mut Vec<Vec3>, normals: &mut Vec<Vec3>) {
+        let table = self.table();
+        for (to, rest) in [&mut *positions, &mut *normals].into_iter().zip(rest) {
+            to.clear();
+            to.extend_from_slice(rest);
+        }
         let chunks = positions.par_chunks_mut(CHUNK).zip(normals.par_chunks_mut(CHUNK));
         chunks.for_each(|(positions, normals)| {
             positions.iter_mut().zip(normals).for_each(|(position, normal)| carry(&table, position, normal));
         });
-        skin
+    }
+
+    /// Carries places of the skin at rest \[m\], head space.
+    pub fn places(&self, positions: &mut [Vec3]) {
+        let table = self.table();
+        positions.par_chunks_mut(CHUNK).for_each(|positions| {
+            let mut normal = Vec3::Y;
+            positions.iter_mut().for_each(|position| carry(&table, position, &mut normal));
+        });
+    }
+
+    /// Places of the steps from the lowest level to the highest.
+    fn table(&self) -> Vec<Carry> {
+        (0..=STEPS).map(|step| self.carry(step as f32 / STEPS as f32)).collect()
     }
 
     fn carry(&self, height: f32) -> Carry {

@@ -161,6 +161,9 @@ settings! {
         plain {
             /// True if a hair hides everything behind it, for any `opacity`.
             solid: bool,
+            /// True if a mesh of few triangles stands for the body in shadows and scattered light: for simpler pictures. Has an
+            /// effect on the CPU alone.
+            coarse_body: bool,
         }
     }
     also Shadow::rising;

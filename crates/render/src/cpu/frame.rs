@@ -121,7 +121,11 @@ impl Frame<'_> {
         let FrameInput { body, lights, look, .. } = *self.input;
         let Scratch { strands, shadows, draw, .. } = &mut *self.scratch;
         draw.place_body(body);
-        opacity_depth(strands, draw.shadow_body(), lights, middle, &look.hair_shadow(), shadows);
+        let coarse = look.shadow.coarse_body;
+        if coarse {
+            draw.place_coarse_body(body);
+        }
+        opacity_depth(strands, draw.shadow_body_of(coarse), lights, middle, &look.hair_shadow(), shadows);
     }
 
     /// Finds what the light of every point needs of all others; the light of a point is found where it is drawn.
@@ -138,7 +142,7 @@ impl Frame<'_> {
             Some(surfaces) => surfaces.mean_color(body_look.color),
             None => body_look.color,
         };
-        let body = draw.shadow_body().map(|body| (body, reflected));
+        let body = draw.shadow_body_of(look.shadow.coarse_body).map(|body| (body, reflected));
         let lit = Lit { body, ..lit(self.input, shadows, own_colors.as_ref()) };
         match look.fibre.model {
             FibreModel::Scheuermann => occlusion.fill(strands, &look.shadow),

@@ -20,6 +20,7 @@ pub(crate) use shade::radiances::Found;
 pub use shade::radiances::{Radiances, Seen, Shading};
 pub use shade::shade;
 pub use shade::shade_chiang::{Lit, Scattering};
+pub(crate) use shadow::CoarseBody;
 pub use shadow::layer_colors::layer_colors;
 pub use shadow::opacity_depth::opacity_depth;
 pub use shadow::opacity_layers::opacity_layers;

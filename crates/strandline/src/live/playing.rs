@@ -16,37 +16,53 @@ use crate::{
 
 /// A picture that takes longer than this \[s\] is drawn simpler while the hair moves.
 const SLOW: f64 = 0.08;
-/// Simpler pictures become coarser after [`ALIKE`] in a row that take longer than the first time \[s\], and finer after as
-/// many that take less than the second: the aim is eight a second.
-const SLOW_DRAFT: f64 = 0.12;
-const QUICK_DRAFT: f64 = 0.06;
-const ALIKE: i32 = 3;
+/// Simpler pictures become coarser after [`MANY_SLOW`] in a row that take longer than the first time \[s\], at once as coarse
+/// as that takes: the aim is fifteen a second. They become finer after [`MANY_QUICK`] of which finer ones should take no
+/// longer than the second. Where these took too long after all, it takes four times as many the next time.
+const SLOW_DRAFT: f64 = 0.066;
+const QUICK_DRAFT: f64 = 0.05;
+const MANY_SLOW: i32 = 2;
+const MANY_QUICK: i32 = 3;
+const MOST_QUICK: i32 = 768;
 /// Time \[s\] without events after which hair that stands still is drawn in full.
 const MOMENT: Duration = Duration::from_millis(200);
 
-/// Which simpler pictures are drawn.
+/// Which simpler pictures are drawn: the same ones again when hair that rested moves.
 pub(super) struct Drafts {
     pub now: Draft,
-    /// Number of the last that took too long, or, below 0, were quick.
+    /// Number of the last that took too long, or, below 0, were quick; the least time \[s\] of those, or the most of these.
     alike: i32,
+    seconds: f64,
+    /// Number of quick ones that finer ones follow.
+    many_quick: i32,
 }
 
 impl Drafts {
-    pub const START: Self = Self { now: Draft::FINEST, alike: 0 };
+    /// The first is there soon, and finer ones follow where they are quick.
+    pub const START: Self = Self { now: Draft::COARSEST, alike: 0, seconds: 0.0, many_quick: MANY_QUICK };
 
     /// Notes how long \[s\] one took.
     fn judge(&mut self, seconds: f64) {
-        self.alike = if seconds > SLOW_DRAFT {
-            self.alike.max(0) + 1
-        } else if seconds < QUICK_DRAFT {
-            self.alike.min(0) - 1
-        } else {
-            0
+        let is_slow = seconds > SLOW_DRAFT;
+        let is_quick = self.now.within(seconds, QUICK_DRAFT).is_finer_than(self.now);
+        (self.alike, self.seconds) = match self.alike {
+            alike @ 1.. if is_slow => (alike + 1, self.seconds.min(seconds)),
+            alike @ ..=-1 if is_quick => (alike - 1, self.seconds.max(seconds)),
+            _ => (i32::from(is_slow) - i32::from(is_quick), seconds),
         };
-        if self.alike.abs() == ALIKE {
-            self.now = if self.alike > 0 { self.now.coarser() } else { self.now.finer() };
-            self.alike = 0;
+        if self.alike == MANY_SLOW {
+            if self.now != Draft::COARSEST {
+                self.many_quick = (4 * self.many_quick).min(MOST_QUICK);
+            }
+            self.become_of(SLOW_DRAFT);
+        } else if self.alike == -self.many_quick {
+            self.become_of(QUICK_DRAFT);
         }
+    }
+
+    /// Chooses the finest that should take no longer than a time \[s\].
+    fn become_of(&mut self, most: f64) {
+        (self.now, self.alike) = (self.now.within(self.seconds, most), 0);
     }
 }
 
@@ -122,9 +138,10 @@ impl Playing {
             self.tried = true;
             return;
         }
+        let full = self.drafts.now.full_seconds(seconds);
         self.drafts.judge(seconds);
-        if !self.tried && 8.0 * seconds < SLOW {
-            // A full one takes some eight times as long: it is tried, once.
+        if !self.tried && full < SLOW {
+            // A full one may be quick: it is tried, once.
             self.slow = false;
         }
     }
@@ -183,18 +200,34 @@ mod tests {
 
     #[test]
     fn drafts_become_as_coarse_as_their_time_asks_for() {
-        let mut drafts = Drafts::START;
+        let mut drafts = Drafts { now: Draft::of(0), ..Drafts::START };
         let mut after = |seconds: &[f64]| {
             seconds.iter().for_each(|seconds| drafts.judge(*seconds));
             drafts.now
         };
-        let (first, second) = (Draft::FINEST, Draft::FINEST.coarser());
-        assert_eq!(after(&[0.3, 0.3, 0.1, 0.3, 0.3]), first, "one was not slow");
-        assert_eq!(after(&[0.3]), second);
-        assert_eq!(after(&[0.1; 9]), second, "as it should be");
-        let coarsest = after(&[0.3; 90]);
-        assert_eq!(coarsest.coarser(), coarsest, "there is none coarser");
-        assert_eq!(after(&[0.05; 3]), coarsest.finer());
-        assert_eq!(after(&[0.05; 90]), first);
+        let (finest, coarsest) = (Draft::of(0), Draft::COARSEST);
+        assert_eq!(after(&[0.3, 0.06, 0.3]), finest, "one was not slow");
+        assert_eq!(after(&[0.3]), coarsest, "at once as coarse as it must be");
+        assert_eq!(after(&[0.3; 90]), coarsest, "there is none coarser");
+        assert_eq!(after(&[0.045; 90]), coarsest, "as it should be");
+        let quick = [0.01; 4 * MANY_QUICK as usize];
+        assert_eq!(after(&quick[1..]), coarsest, "finer ones were too slow before");
+        assert_eq!(after(&[0.06]), coarsest, "one was not quick");
+        assert_eq!(after(&quick), finest, "at once as fine as it may be");
+        let second = after(&[0.08, 0.1]);
+        assert!(finest.is_finer_than(second) && second.is_finer_than(coarsest), "the quicker of both counts");
+    }
+
+    #[test]
+    fn a_full_picture_is_tried_where_simpler_ones_are_quick() {
+        let mut playing = Playing { slow: true, ..Playing::START };
+        playing.judge(0.03, true);
+        assert!(playing.slow);
+        playing.judge(0.001, true);
+        assert!(!playing.slow);
+        // It was not quick, and is not tried again.
+        playing.judge(0.2, false);
+        playing.judge(0.001, true);
+        assert!(playing.slow);
     }
 }

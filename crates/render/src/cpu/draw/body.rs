@@ -6,6 +6,7 @@ use strandline_body::{BodyFrame, Mesh, MovedSkin};
 
 use super::occluders::{BLOCK, Occluders, TILE_BLOCKS};
 use super::tiles::{TileRect, Tiles};
+use crate::cpu::CoarseBody;
 use crate::frame::projection::Projection;
 use crate::frame::samples::{NO_TRIANGLE, Samples, TILE, TILE_SAMPLES};
 use crate::surfaces::Surfaces;
@@ -18,6 +19,8 @@ const SKIN_DEPTH: f32 = 4e-4;
 /// Steepest slope at which that depth is turned into depth along the line of sight, as the cosine
 /// between normal and line of sight: hair behind an outline stays hidden.
 const MIN_COSINE: f32 = 0.2;
+/// Rounding of places on the screen \[sample\].
+const ROUNDING: f32 = 1e-2;
 
 /// A body and where it is in this frame.
 #[derive(Debug, Default)]
@@ -32,6 +35,8 @@ pub struct Body {
     pub positions: Vec<Vec3>,
     /// Vertex normals, world space.
     pub normals: Vec<Vec3>,
+    /// Few triangles that stand for it in shadows.
+    pub coarse: CoarseBody,
     /// Density of roots about every vertex, 0 to 1; empty without roots.
     pub roots: Vec<f32>,
     screen: Vec<Vec4>,
@@ -142,7 +147,7 @@ impl Body {
                         cut(corners, index, projection, run);
                     }
                 }
-                run.retain_mut(|triangle| triangle.turn(closed));
+                run.retain_mut(|triangle| triangle.meets_samples() && triangle.turn(closed));
             },
         );
         self.faces.clear();
@@ -189,6 +194,15 @@ impl ScreenTriangle {
             self.corners.swap(1, 2);
         }
         area.is_finite() && (area < 0.0 || (area > 0.0 && !closed))
+    }
+
+    /// False where the middle of no sample can lie within: so it is with most triangles that are smaller than a sample.
+    fn meets_samples(&self) -> bool {
+        let [a, b, c] = self.corners;
+        let low = (a.min(b).min(c) - (0.5 + ROUNDING)).ceil();
+        let high = (a.max(b).max(c) - (0.5 - ROUNDING)).floor();
+        // Written so that a NaN passes: `turn` sorts it out.
+        !(low.x > high.x || low.y > high.y)
     }
 
     fn rect(&self, samples: &Samples) -> Option<TileRect> {

@@ -80,6 +80,13 @@ impl Draw {
         }
     }
 
+    /// Carries the few triangles that stand for the body in shadows to their place.
+    pub(crate) fn place_coarse_body(&mut self, frame: &BodyFrame) {
+        if let Some(Body { coarse, mesh, surfaces, .. }) = &mut self.body {
+            coarse.place(mesh, surfaces.as_ref(), frame);
+        }
+    }
+
     /// Number of vertices of the body; `None` without a body.
     pub fn vertex_count(&self) -> Option<usize> {
         self.body.as_ref().map(|body| body.mesh.positions.len())
@@ -90,6 +97,12 @@ impl Draw {
         let body = self.body.as_ref()?;
         let cuts = body.surfaces.as_ref().filter(|surfaces| surfaces.cuts).map(Cuts::of);
         Some(ShadowBody { positions: &body.positions, triangles: body.triangles(), cuts })
+    }
+
+    /// The body in its place, to cast shadows: of few triangles where it is `coarse` and was placed so.
+    pub(crate) fn shadow_body_of(&self, coarse: bool) -> Option<ShadowBody<'_>> {
+        let few = self.body.as_ref().filter(|_| coarse).and_then(|body| body.coarse.shadow_body());
+        few.or_else(|| self.shadow_body())
     }
 
     /// The body's materials, where it has some.

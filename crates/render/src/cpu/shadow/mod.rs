@@ -1,6 +1,7 @@
 //! Deep opacity maps \[Yuksel2008\], filled, and soft edges of shadows on skin.
 
 mod body;
+mod coarse_body;
 mod hair;
 pub mod layer_colors;
 pub mod opacity_depth;
@@ -8,3 +9,4 @@ pub mod opacity_layers;
 mod penumbra;
 
 pub use body::{Cuts, ShadowBody};
+pub(crate) use coarse_body::CoarseBody;

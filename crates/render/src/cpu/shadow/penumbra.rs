@@ -28,7 +28,7 @@ const GOLDEN: f32 = 0.618_034;
 const PLASTIC: f32 = 0.754_877_7;
 const OTHER: f32 = 0.569_840_3;
 
-/// Middle and corners of a part of a light: rays to them tell whether more are needed.
+/// Middle and corners of a part of a light: rays to them tell whether more are needed. So few are followed at once.
 const CORNERS: [Vec2; 5] =
     [Vec2::ZERO, Vec2::new(-0.5, -0.5), Vec2::new(0.5, -0.5), Vec2::new(-0.5, 0.5), Vec2::new(0.5, 0.5)];
 
@@ -123,13 +123,15 @@ impl ShadowMap {
             let open = if self.body_depths.is_empty() { 1.0 } else { self.past_body(&body, ray) };
             if open > 0.0 { open * self.past_hair(&hair, ray) } else { 0.0 }
         };
-        let corner = |end: Vec2| share(Ray { end, stretch: 1.0 });
-        let first = corner(CORNERS[0]);
-        let plain = first == 0.0 || first == 1.0;
-        if plain && CORNERS[1..].iter().all(|&end| corner(end) == first) {
-            return first;
-        }
         let rays = self.settings.rays_of(places[1]);
+        if rays > CORNERS.len() {
+            let corner = |end: Vec2| share(Ray { end, stretch: 1.0 });
+            let first = corner(CORNERS[0]);
+            let plain = first == 0.0 || first == 1.0;
+            if plain && CORNERS[1..].iter().all(|&end| corner(end) == first) {
+                return first;
+            }
+        }
         (0..rays).map(|ray| share(Ray::new(ray, rays, places))).sum::<f32>() / rays as f32
     }
 
