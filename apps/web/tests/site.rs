@@ -123,9 +123,14 @@ fn the_stage_has_the_background_of_the_pictures() {
     let last = picture.height as usize - 1;
     for (index, stop) in stops.iter().enumerate() {
         let row = index * last / 4;
-        let shown = &picture.pixels[3 * picture.width as usize * row..][..3];
-        let apart = shown.iter().zip(stop).map(|(one, other)| (i32::from(*one) - other).abs()).max();
-        assert!(apart.unwrap() <= 2, "row {row}: {shown:?}, {stop:?}");
+        let width = picture.width as usize;
+        let pixels = picture.pixels[3 * width * row..][..3 * width].chunks(3);
+        let apart = |pixel: &[u8]| {
+            pixel.iter().zip(stop).map(|(one, other)| (i32::from(*one) - other).abs()).max().unwrap()
+        };
+        // Hair and body leave a part of each row free.
+        let nearest = pixels.map(apart).min().unwrap();
+        assert!(nearest <= 2, "row {row}: {nearest} of 255 from {stop:?}");
     }
 }
 

@@ -151,7 +151,7 @@ mod tests {
             let (height, angle) = (ring as f32 / rings as f32, (turn % turns) as f32 / turns as f32);
             let (sine, cosine) = (height * std::f32::consts::PI).sin_cos();
             // All vertices of a pole are at one place.
-            let sine = if ring % rings == 0 { 0.0 } else { sine };
+            let sine = if ring.is_multiple_of(rings) { 0.0 } else { sine };
             let (side, front) = (angle * std::f32::consts::TAU).sin_cos();
             vec3(sine * side, cosine, sine * front)
         };

@@ -1,4 +1,4 @@
-//! How far the parts of a skin move through a step, by their place: hair on a head that turns need not know how far its
+//! Ways of the parts of a skin through a step, by their place: hair on a head that turns need not know how far its
 //! shoulders move.
 
 use glam::{IVec3, Vec3, Vec3A};

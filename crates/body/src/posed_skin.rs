@@ -126,7 +126,7 @@ impl PosedSkin {
     /// skin at the start.
     pub fn at_least_after(&self, point: Vec3, distance: f32) -> f32 {
         let near = distance - self.shift_about(point);
-        // What ends within the reach of the ways about a point has moved no more than these.
+        // Skin that ends within the reach of the ways about a point has moved no more than these.
         let reach = self.shifts.as_ref().map_or(f32::INFINITY, LocalShifts::reach);
         near.min(reach.max(distance - self.most_shift))
     }

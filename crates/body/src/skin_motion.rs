@@ -15,6 +15,9 @@ const LEAST: usize = 8;
 /// Largest coordinate that is taken for a place \[m\].
 const FARTHEST: f32 = 1e6;
 
+/// Times of the motions \[s\], and the frame there.
+type Known = (Vec<f64>, BodyFrame);
+
 /// Body frames over time of a mesh in head space whose first vertices move: the skin, and the rigid transform of the
 /// head, which is that of the vertices about the roots.
 #[derive(Clone, Debug)]
@@ -26,7 +29,7 @@ pub struct SkinMotion {
     /// Vertices that move with the head.
     fitted: Arc<[u32]>,
     /// The frame of the times of the motions that were asked for last.
-    last: Arc<Mutex<Option<(Vec<f64>, BodyFrame)>>>,
+    last: Arc<Mutex<Option<Known>>>,
 }
 
 /// Vertices of a mesh that move as one motion has them.

@@ -2,6 +2,8 @@
 //!
 //! `cargo run --release -p strandline-sim --example skin_step -- [steps] [steps per second]`
 
+#![allow(clippy::disallowed_methods, clippy::print_stdout)] // it prints times, and nothing depends on its bits
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

@@ -205,6 +205,20 @@ impl Scene {
             }
         }
         self.check_as("")?;
+        self.check_belonging()?;
+        self.picture.validate()?;
+        self.motion.motion()?;
+        self.wind.curve()?;
+        camera_motion::curve(&self.camera.keyframes)?;
+        solid_motion::solid_motions(&self.colliders, self.motion.interpolation)?;
+        if matches!(self.devices.simulation, Backend::Gpu(_)) {
+            self.simulation.check_on_gpu()?;
+        }
+        Ok(())
+    }
+
+    /// Checks that what belongs to a file is not given without it.
+    fn check_belonging(&self) -> Result<(), Error> {
         let (further, part) = ("further files without a first one", "a part of a body without a file");
         let (no_groom, no_body) = (self.groom.file.is_none(), self.body.file.is_none());
         let no_motion = self.motion.name == MotionName::File && self.motion.file.is_none();
@@ -251,14 +265,6 @@ impl Scene {
         {
             let key = format!("body.parts[{index}].teleports");
             return Err(SettingError::new(key, "marks of a part that does not move", "`clip` too").into());
-        }
-        self.picture.validate()?;
-        self.motion.motion()?;
-        self.wind.curve()?;
-        camera_motion::curve(&self.camera.keyframes)?;
-        solid_motion::solid_motions(&self.colliders, self.motion.interpolation)?;
-        if matches!(self.devices.simulation, Backend::Gpu(_)) {
-            self.simulation.check_on_gpu()?;
         }
         Ok(())
     }

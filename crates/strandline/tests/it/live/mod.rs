@@ -223,11 +223,11 @@ fn a_slow_picture_is_simpler_while_it_moves_and_full_when_it_rests() {
     let live = Live::with_clock(slow, waking(), clock.clone()).unwrap();
     live.send(Command::Adapt(true));
     let draft = wait(|| live.take_shown().filter(|shown| shown.draft));
-    assert_eq!((draft.picture.width, draft.picture.height), (22, 16), "the coarsest comes first");
+    assert_eq!((draft.picture.width, draft.picture.height), (16, 12), "the coarsest comes first");
     clock.set_picture_seconds(0.03);
-    wait(|| live.take_shown().filter(|shown| shown.draft && shown.picture.width > 22));
+    wait(|| live.take_shown().filter(|shown| shown.draft && shown.picture.width > 16));
     clock.set_picture_seconds(0.3);
-    wait(|| live.take_shown().filter(|shown| shown.draft && shown.picture.width == 22));
+    wait(|| live.take_shown().filter(|shown| shown.draft && shown.picture.width == 16));
     live.send(Command::Play(false));
     let resting = settled(&live);
     assert!(resting.draft, "nothing has rested for a moment yet");
