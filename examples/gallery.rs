@@ -13,7 +13,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         scene.film.frames = 1;
         (scene.picture.width, scene.picture.height) = (400, 440);
         if quick {
-            scene.style.strand_count = 50;
+            (scene.style.strand_count, scene.body.spacing) = (50, 0.01);
+            (scene.picture.width, scene.picture.height) = (80, 88);
             scene.film.settle = 0.0;
         }
         for event in Player::new(&scene, Backend::auto(), true)? {

@@ -24,6 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     scene.set_style(Style::Wavy);
     scene.style.strand_count = if quick { 40 } else { 1000 };
     let (width, height) = if quick { (48, 52) } else { (240, 264) };
+    scene.body.spacing = if quick { 0.01 } else { scene.body.spacing };
     scene.picture = PictureSettings { width, height, ..scene.picture };
     let mut hair = Hair::from_prepared(Prepared::new(&scene)?, Backend::Cpu)?;
     let room = surroundings(room)?;

@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     row(&small).save(assets.join("styles.jpg"))?;
     let (mut hair, camera) = grown(Style::Bob, quick)?;
     let mut looks = Vec::new();
-    for preset in Preset::ALL {
+    for preset in Preset::ALL.into_iter().step_by(if quick { 6 } else { 1 }) {
         let mut look = hair.look().clone();
         look.dress(preset);
         looks.push(hair.picture(&camera, &look)?);
@@ -57,7 +57,7 @@ fn grown(style: Style, quick: bool) -> Result<(Hair, Camera), strandline::Error>
     let side = if quick { 48 } else { 300 };
     (scene.picture.width, scene.picture.height) = (side, side);
     if quick {
-        scene.style.strand_count = 40;
+        (scene.style.strand_count, scene.body.spacing) = (40, 0.01);
     }
     if matches!(style.name(), "bun" | "braid") {
         scene.camera.view = View::Side;

@@ -111,7 +111,8 @@ fn each_switch_shows_its_stage_and_takes_it_back() {
 fn the_stage_has_the_background_of_the_pictures() {
     let few = [("style.strand_count", "8"), ("groom.bound", "0")];
     let few = few.map(|(key, value)| (key.to_owned(), value.to_owned()));
-    let picture = Page::open(few.to_vec(), SIZE).unwrap().picture(None).unwrap();
+    // Wide, so that hair and body leave a part of each row free.
+    let picture = Page::open(few.to_vec(), [3 * SIZE[1], SIZE[1]]).unwrap().picture(None).unwrap();
     let css = file("style.css");
     let gradient = css.split_once("linear-gradient(").unwrap().1.split_once(");").unwrap().0;
     let stops: Vec<Vec<i32>> = gradient
@@ -128,7 +129,6 @@ fn the_stage_has_the_background_of_the_pictures() {
         let apart = |pixel: &[u8]| {
             pixel.iter().zip(stop).map(|(one, other)| (i32::from(*one) - other).abs()).max().unwrap()
         };
-        // Hair and body leave a part of each row free.
         let nearest = pixels.map(apart).min().unwrap();
         assert!(nearest <= 2, "row {row}: {nearest} of 255 from {stop:?}");
     }
