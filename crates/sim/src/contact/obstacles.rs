@@ -166,18 +166,29 @@ impl<'a> Obstacles<'a> {
         let first = self.colliders.first()?;
         let together = self.colliders.iter().all(|collider| collider.carrier == first.carrier);
         let nearest = if together { 0 } else { self.nearest(point)?.2 };
-        Some(self.velocity(nearest, point, before))
+        Some(self.velocity(nearest, point, before, false))
+    }
+
+    /// The same at a point of which [`Self::distance`] was asked for last with `before`.
+    pub fn velocity_there(&self, point: Vec3, before: &mut u32) -> Option<Vec3> {
+        if self.colliders.len() != 1 {
+            return self.nearest_velocity(point, before);
+        }
+        Some(self.velocity(0, point, before, true))
     }
 
     /// Mean velocity \[m/s\] over the step of the material of a collider that ends at `point`.
-    fn velocity(&self, collider: usize, point: Vec3, before: &mut u32) -> Vec3 {
+    /// `before` is the nearest triangle already where `is_nearest`.
+    fn velocity(&self, collider: usize, point: Vec3, before: &mut u32, is_nearest: bool) -> Vec3 {
         match self.colliders[collider].carrier {
             Carrier::World => Vec3::ZERO,
             Carrier::Piece(piece) | Carrier::Moved(piece) => {
                 let Placed { start, piece_from_world, .. } = self.pieces[usize::from(piece)];
                 let local = piece_from_world.point(point);
                 let shift = self.skins[collider].as_ref().map_or(Vec3::ZERO, |skin| {
-                    *before = skin.nearest(local, *before).triangle;
+                    if !is_nearest {
+                        *before = skin.nearest(local, *before).triangle;
+                    }
                     skin.shift(*before, local)
                 });
                 (point - start.point(local - shift)) / self.time_step

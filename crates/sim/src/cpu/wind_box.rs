@@ -204,7 +204,7 @@ impl WindBox {
 
     /// Fills a cell with the solid at a place.
     fn fill(&self, content: &mut Content, obstacles: &Obstacles, place: Vec3, near: &mut u32) {
-        let speed = obstacles.nearest_velocity(place, near).unwrap_or_default() - self.wind;
+        let speed = obstacles.velocity_there(place, near).unwrap_or_default() - self.wind;
         content.speed = Vec3::from(self.axes.0.map(|axis| axis.dot(speed)));
         content.depth = -1.0;
     }
