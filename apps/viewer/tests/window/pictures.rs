@@ -30,11 +30,10 @@ const SECTIONS: [(&str, bool); 16] = [
 const WIDTH: f32 = 300.0;
 const SCALE: f32 = 1.5;
 
-/// The scene of the pictures: that of the demo at a lower cost.
+/// The scene of the pictures: that of the demo on the CPU.
 fn demo() -> Scene {
     let mut scene = Scene::demo();
     (scene.devices.simulation, scene.devices.pictures) = (strandline::Backend::Cpu, strandline::Backend::Cpu);
-    scene.style.strand_count = 400;
     scene
 }
 
@@ -97,7 +96,7 @@ fn pictures_of_the_panels_show_each_section_whole() {
 
 /// The window while it loads, with its hair, an overlay, and a message with its mend.
 fn whole(folder: &Path) {
-    let mut window = Window::of_size(demo(), egui::vec2(1100.0, 700.0), SCALE);
+    let mut window = Window::of_size(demo(), egui::vec2(1100.0, 700.0), 1.0);
     window.until("the hair", |app| app.load_stage().is_some_and(|(_, has_hair)| has_hair));
     window.pass(Vec::new(), None);
     save(&window.drawn(), folder, "loading");
