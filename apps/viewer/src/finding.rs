@@ -20,9 +20,9 @@ pub fn show(app: &mut App, ui: &mut Ui) {
         finding.found = find(&finding.words);
     }
     let found: Vec<Found> = finding.found.iter().take(MOST).cloned().collect();
-    let values = Values::of(&app.scene);
-    for found in &found {
-        setting_row::show(app, found, &values, &found.key, ui);
+    if !found.is_empty() {
+        let values = Values::of(&app.scene);
+        found.iter().for_each(|found| setting_row::show(app, found, &values, &found.key, ui));
     }
     let more = app.finding.found.len().saturating_sub(MOST);
     if more > 0 {

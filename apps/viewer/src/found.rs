@@ -1,5 +1,6 @@
 //! Settings that were found.
 
+use eframe::egui::Id;
 use strandline::edit::Found;
 
 /// The words that are looked for, and the settings that were found.
@@ -8,8 +9,8 @@ pub struct Finding {
     pub words: String,
     pub looked_for: String,
     pub found: Vec<Found>,
-    /// The value that is being dragged or typed, by its key.
-    pub edited: Option<(String, Edited)>,
+    /// The value that is being dragged or typed, by its row: the same setting may be seen in two.
+    pub edited: Option<(Id, Edited)>,
 }
 
 /// A value that is being dragged or typed.

@@ -112,7 +112,9 @@ fn strip(app: &mut App, (keys, times): (Keys, &[f64]), timeline: &TimelineShown,
         let begun = ui.input(|input| input.pointer.press_origin()).or(pointer);
         app.playback.dragged_key = begun.and_then(|begun| key_at(begun.x)).map(|index| (keys, index));
     }
-    let dragged = app.playback.dragged_key.filter(|(of, _)| *of == keys).map(|(_, index)| index);
+    // Another scene may have come since the drag began.
+    let dragged = app.playback.dragged_key.filter(|(of, index)| *of == keys && *index < times.len());
+    let dragged = dragged.map(|(_, index)| index);
     if let (Some(index), Some(pointer)) = (dragged, pointer) {
         app.move_key(keys, index, time_of(f64::from(frame_at(pointer.x, rect, end)), timeline));
     }

@@ -1,6 +1,6 @@
 //! A row for any setting of a scene: its value, to be changed in place, and its name.
 
-use eframe::egui::{self, DragValue, TextEdit, Ui, WidgetInfo, accesskit::Role};
+use eframe::egui::{self, DragValue, Id, TextEdit, Ui, WidgetInfo, accesskit::Role};
 use strandline::{
     edit::{Found, Value, Values, quantity, with_value},
     settings::{Kind, Row, Word},
@@ -15,13 +15,14 @@ const ABSENT: &str = "not given";
 /// the setting out of the scene, which then has its default.
 pub fn show(app: &mut App, found: &Found, values: &Values, name: &str, ui: &mut Ui) {
     let now = values.get(&found.key);
+    let row = ui.scope_id().with(&found.key);
     let changed = ui.horizontal_wrapped(|ui| {
         let changed = match (found.row.kind, now) {
-            (Kind::Number(1) | Kind::Whole(1), Some(value)) => number(app, found, value, ui).map(Some),
+            (Kind::Number(1) | Kind::Whole(1), Some(value)) => number(app, (row, found), value, ui).map(Some),
             (Kind::Flag, Some(Value::Boolean(flag))) => tick(*flag, name, ui),
             (Kind::Flag, _) => choice(found, &FLAGS, None, ui),
             (Kind::Words(words), now) => choice(found, words, now.and_then(Value::as_str), ui),
-            (_, now) => text(app, found, now, ui),
+            (_, now) => text(app, (row, found), now, ui),
         };
         let tip = format!("{}\na right click sets the default", about(found.row));
         let label = ui.add(egui::Label::new(name).sense(egui::Sense::click())).on_hover_text(tip);
@@ -59,11 +60,11 @@ fn choice(found: &Found, words: &[Word], now: Option<&str>, ui: &mut Ui) -> Opti
 }
 
 /// A number that is dragged or typed; it counts when the mouse or the field lets go.
-fn number(app: &mut App, found: &Found, value: &Value, ui: &mut Ui) -> Option<Value> {
+fn number(app: &mut App, (row, found): (Id, &Found), value: &Value, ui: &mut Ui) -> Option<Value> {
     let is_whole = matches!(value, Value::Integer(_));
     let now = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))?;
     let mut number = match &app.finding.edited {
-        Some((key, Edited::Number(number))) if *key == found.key => *number,
+        Some((of, Edited::Number(number))) if *of == row => *number,
         _ => now,
     };
     let [least, most] = found.row.range.unwrap_or([f64::MIN, f64::MAX]);
@@ -76,29 +77,34 @@ fn number(app: &mut App, found: &Found, value: &Value, ui: &mut Ui) -> Option<Va
     let response = ui.add(field.suffix(suffix).custom_parser(move |text| quantity(text, unit)));
     response.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, &found.key));
     if response.changed() {
-        app.finding.edited = Some((found.key.clone(), Edited::Number(number)));
+        app.finding.edited = Some((row, Edited::Number(number)));
     }
     let rests = !response.dragged() && !response.has_focus();
-    let is_of = |edited: &mut (String, Edited)| rests && edited.0 == found.key;
+    let is_of = |edited: &mut (Id, Edited)| rests && edited.0 == row;
     let Some((_, Edited::Number(number))) = app.finding.edited.take_if(is_of) else { return None };
     Some(if is_whole { Value::Integer(number.round() as i64) } else { Value::Float(number) })
 }
 
 /// A value that is typed: a vector, a path, a name, a number that may be missing. It counts when the field lets go;
 /// nothing in it leaves the setting out.
-fn text(app: &mut App, found: &Found, now: Option<&Value>, ui: &mut Ui) -> Option<Option<Value>> {
+fn text(
+    app: &mut App,
+    (row, found): (Id, &Found),
+    now: Option<&Value>,
+    ui: &mut Ui,
+) -> Option<Option<Value>> {
     let written = now.map_or_else(String::new, written);
     let mut text = match &app.finding.edited {
-        Some((key, Edited::Text(text))) if *key == found.key => text.clone(),
+        Some((of, Edited::Text(text))) if *of == row => text.clone(),
         _ => written.clone(),
     };
     let field = TextEdit::singleline(&mut text).hint_text(ABSENT).desired_width(110.0);
     let response = ui.add(field.id_salt(&found.key));
     response.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, &found.key));
     if response.changed() {
-        app.finding.edited = Some((found.key.clone(), Edited::Text(text)));
+        app.finding.edited = Some((row, Edited::Text(text)));
     }
-    let is_of = |edited: &mut (String, Edited)| !response.has_focus() && edited.0 == found.key;
+    let is_of = |edited: &mut (Id, Edited)| !response.has_focus() && edited.0 == row;
     let Some((_, Edited::Text(text))) = app.finding.edited.take_if(is_of) else { return None };
     if text.trim() == written {
         return None;

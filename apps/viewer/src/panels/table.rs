@@ -78,11 +78,11 @@ fn parts(
     add: impl Fn(&mut Scene, PathBuf),
     remove: impl Fn(&mut Scene, usize),
 ) {
-    let mut scene = app.scene.clone();
+    let mut changed = None;
     for (index, file) in files.iter().enumerate() {
         ui.horizontal(|ui| {
             if button(ui, "x", "takes this file out") {
-                remove(&mut scene, index);
+                remove(changed.get_or_insert_with(|| app.scene.clone()), index);
             }
             let name = file.file_name().unwrap_or_default().to_string_lossy();
             ui.label(name).on_hover_text(file.display().to_string());
@@ -99,12 +99,12 @@ fn parts(
         let wanted = button(ui, "Add file", "loads it beside the others") || entered;
         if wanted && !text.trim().is_empty() {
             let path = PathBuf::from(text.trim());
-            add(&mut scene, std::path::absolute(&path).unwrap_or(path));
+            add(changed.get_or_insert_with(|| app.scene.clone()), std::path::absolute(&path).unwrap_or(path));
             text.clear();
         }
         ui.data_mut(|data| data.insert_temp(typed, text));
     });
-    if scene != app.scene {
+    if let Some(scene) = changed {
         app.apply(scene);
     }
 }

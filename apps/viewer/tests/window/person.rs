@@ -226,16 +226,27 @@ impl Window {
         self.type_in(place, text);
     }
 
+    /// Clicks the last of several fields of a label and types in place of its own value, without an end.
+    pub fn begin_typing_last(&mut self, role: Role, label: &str, text: &str) {
+        let field = self.harness.query_all_by_role_and_label(role, label).last();
+        let place = field.expect(label).rect().center();
+        self.type_over(place, text);
+    }
+
     /// Clicks a field and types a value in place of its own: one step.
     fn type_in(&mut self, place: egui::Pos2, text: &str) {
         let steps = self.steps + 1;
+        self.type_over(place, text);
+        self.press(egui::Key::Enter);
+        self.steps = steps;
+    }
+
+    fn type_over(&mut self, place: egui::Pos2, text: &str) {
         self.pass(vec![egui::Event::PointerMoved(place), button(place, true)], None);
         self.pass(vec![button(place, false)], None);
         self.pass(Vec::new(), None);
         self.press_with(egui::Modifiers::COMMAND, egui::Key::A);
         self.pass(vec![egui::Event::Text(text.to_owned())], None);
-        self.press(egui::Key::Enter);
-        self.steps = steps;
     }
 
     /// True where the panels are dark.

@@ -41,6 +41,26 @@ fn any_setting_of_groom_body_surroundings_and_film_is_changed_in_its_panel() {
     window.until("a later beginning", |app| app.seen().film.start == 2.0 && !app.is_loading());
 }
 
+#[test]
+fn a_setting_that_is_seen_twice_is_typed_in_one_row() {
+    let mut window = Window::of_size(scene(), egui::vec2(900.0, 1600.0), 0.5);
+    window.until("a picture", |app| app.shown().is_some());
+    window.press(Key::Space);
+    window.settle();
+    window.type_at(Role::TextInput, "find a setting", "body rotation");
+    assert!(window.has_label("body.rotation"));
+    ["Scene", "Motion", "Look", "Body"].into_iter().for_each(|name| window.toggle(name));
+    window.settle();
+    // The row of the panel is below that of the search, which has no focus meanwhile.
+    window.begin_typing_last(Role::TextInput, "body.rotation", "1, 2");
+    (0..3).for_each(|_| window.pass(Vec::new(), None));
+    assert_eq!(window.app().error(), None, "half of it was taken");
+    window.pass(vec![egui::Event::Text(", 3".to_owned())], None);
+    window.press(Key::Enter);
+    let wanted = glam::Vec3::new(1.0, 2.0, 3.0);
+    window.until("the whole of it", |app| app.seen().body.rotation == wanted && !app.is_loading());
+}
+
 /// A window that stands still with two keys of the head.
 fn keyed() -> Window {
     let mut scene = scene();
