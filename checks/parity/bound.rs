@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{Quat, Vec3};
 use strandline_body::{BodyFrame, Carrier, Collider, DistanceGrid, Mannequin, Pose, Shape, Solids};
 use strandline_checks::gpu;
-use strandline_groom::{Binding, Frames, Guides, LANES, Style, StyleSettings, Surface, Vec3Lanes};
+use strandline_groom::{Binding, Frames, Guides, LANES, LaneSet, Style, StyleSettings, Surface, Vec3Lanes};
 use strandline_render::Strands;
 use strandline_render::cpu::{Curves, interpolate, keep_outside, tessellate};
 use strandline_render::gpu::GpuRenderer;
@@ -60,7 +60,7 @@ fn on_cpu(binding: &Binding, solids: &Solids) -> Vec<Vec3Lanes> {
     let surface = (!placed.is_empty()).then_some(&surface);
     let (mut frames, mut places) = (Frames::default(), Vec::new());
     binding.follow(&blown(binding.guides()), &pose().into(), &mut frames);
-    binding.place(&frames, &pose().into(), surface, &mut places);
+    binding.place(LaneSet::ALL, &frames, &pose().into(), surface, &mut places);
     places
 }
 
@@ -111,7 +111,7 @@ fn bind_places_strands_where_the_cpu_has_them() {
     assert!(apart_most < 1e-5, "{apart_most} m");
     let (mut frames, mut still) = (Frames::default(), Vec::new());
     binding.follow(binding.guides().positions(), &BodyFrame::REST, &mut frames);
-    binding.place(&frames, &BodyFrame::REST, None, &mut still);
+    binding.place(LaneSet::ALL, &frames, &BodyFrame::REST, None, &mut still);
     assert!(apart(&on_cpu, &still, strands)[strands * POINTS / 2] > 0.05, "the comparison can fail");
 }
 

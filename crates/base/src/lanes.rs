@@ -17,6 +17,75 @@ pub const fn lane_place(strand: usize, point: usize, points_per_strand: usize) -
     (strand / LANES * points_per_strand + point, strand % LANES)
 }
 
+/// Some of each eight strands, the same of every eight: a sample that is spread evenly. Its strands are numbered in the order
+/// of all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LaneSet {
+    /// Lanes of the set in order; those from `count` on are none of it.
+    lanes: [u8; LANES],
+    count: u8,
+}
+
+impl Default for LaneSet {
+    fn default() -> Self {
+        Self::ALL
+    }
+}
+
+impl LaneSet {
+    /// All strands.
+    pub const ALL: Self = Self { lanes: [0, 1, 2, 3, 4, 5, 6, 7], count: LANES as u8 };
+
+    /// The lanes for which a function is true.
+    ///
+    /// # Panics
+    /// There is none.
+    pub fn of(holds: impl Fn(usize) -> bool) -> Self {
+        let mut set = Self { lanes: [0; LANES], count: 0 };
+        for lane in (0..LANES).filter(|lane| holds(*lane)) {
+            set.lanes[usize::from(set.count)] = lane as u8;
+            set.count += 1;
+        }
+        assert!(set.count > 0, "a set without lanes");
+        set
+    }
+
+    /// True where all strands are in the set.
+    pub fn is_all(&self) -> bool {
+        *self == Self::ALL
+    }
+
+    /// Number of strands in the set, of a number of strands.
+    pub fn count_of(&self, strand_count: usize) -> usize {
+        let (eights, rest) = (strand_count / LANES, strand_count % LANES);
+        let lanes = &self.lanes[..usize::from(self.count)];
+        eights * lanes.len() + lanes.iter().filter(|lane| usize::from(**lane) < rest).count()
+    }
+
+    /// Number among all strands of a strand of the set.
+    #[inline]
+    pub fn strand(&self, index: usize) -> usize {
+        let count = usize::from(self.count);
+        index / count * LANES + usize::from(self.lanes[index % count])
+    }
+
+    /// Takes the strands of the set out of lanes of shape `[block][point]`, in the same shape.
+    pub fn taken<L: LaneArray + Default + Clone>(
+        &self,
+        lanes: &[L],
+        strand_count: usize,
+        points_per_strand: usize,
+    ) -> Vec<L> {
+        let count = self.count_of(strand_count);
+        let mut taken = vec![L::default(); block_count(count) * points_per_strand];
+        fill_lanes(&mut taken, count, points_per_strand, |strand, point| {
+            let (index, lane) = lane_place(self.strand(strand), point, points_per_strand);
+            lanes[index].element(lane)
+        });
+        taken
+    }
+}
+
 /// Elements of shape `[block][point]` of lanes, strand after strand: shape `[strand][point]`.
 pub fn in_strand_order<L: LaneArray>(
     lanes: &[L],
@@ -151,5 +220,23 @@ mod tests {
         let mut numbers = vec![Lanes::default(); block_count(strands) * points];
         fill_lanes(&mut numbers, strands, points, |strand, point| (10 * strand + point) as f32);
         assert_eq!(in_strand_order(&numbers, strands, points).nth(4 * points + 1), Some(41.0));
+    }
+
+    #[test]
+    fn a_set_takes_its_lanes_of_every_eight_strands_in_order() {
+        let set = LaneSet::of(|lane| lane % 3 == 1);
+        for (strands, wanted) in [(7, vec![1, 4]), (8, vec![1, 4, 7]), (22, vec![1, 4, 7, 9, 12, 15, 17, 20])]
+        {
+            let found: Vec<usize> = (0..set.count_of(strands)).map(|index| set.strand(index)).collect();
+            assert_eq!(found, wanted);
+            let mut all = vec![Lanes::default(); block_count(strands) * 2];
+            fill_lanes(&mut all, strands, 2, |strand, point| (10 * strand + point) as f32);
+            let taken = set.taken(&all, strands, 2);
+            let points: Vec<f32> = in_strand_order(&taken, wanted.len(), 2).collect();
+            let of = |strand: &usize| [10.0 * *strand as f32, 10.0 * *strand as f32 + 1.0];
+            assert_eq!(points, wanted.iter().flat_map(of).collect::<Vec<_>>());
+        }
+        assert!(LaneSet::of(|_| true).is_all() && !set.is_all());
+        assert_eq!((LaneSet::ALL.count_of(13), LaneSet::ALL.strand(11)), (13, 11));
     }
 }

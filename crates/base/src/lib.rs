@@ -34,7 +34,9 @@ mod whole_file;
 pub use folder_lock::FolderLock;
 pub use growing_file::{GrowingFile, refuse_busy};
 pub use invalidates::Invalidates;
-pub use lanes::{LANES, LaneArray, Lanes, Vec3Lanes, block_count, fill_lanes, in_strand_order, lane_place};
+pub use lanes::{
+    LANES, LaneArray, LaneSet, Lanes, Vec3Lanes, block_count, fill_lanes, in_strand_order, lane_place,
+};
 pub use plain_file::{open_plain, read_plain};
 pub use pose::Pose;
 pub use printable::printable;

@@ -2,7 +2,9 @@
 
 use std::task::{Context, Poll, Waker};
 
-use strandline_gpu::{Buffer, Gpu, GpuError, Kernel, Readback, Recorder, Timer, groups, kernel, wgpu};
+use strandline_gpu::{
+    Buffer, Drawing, Gpu, GpuError, Kernel, Output, Readback, Recorder, Timer, drawing, groups, kernel, wgpu,
+};
 
 const NUMBERS: &str = "
 override FACTOR: u32 = 1u;
@@ -32,6 +34,19 @@ kernel! {
     /// A kernel whose text is wrong.
     struct Broken in "broken" ("@compute @workgroup_size(64)\nfn count() {\n    let x = unknown;\n}"), entry "count" {
         0 numbers: ReadWrite u32,
+    }
+}
+
+drawing! {
+    /// One triangle in the colour of the first number.
+    struct Flat in "flat" (
+        "@group(0) @binding(0) var<storage, read> numbers: array<u32>;\n\
+         @vertex fn corner(@builtin(vertex_index) at: u32) -> @builtin(position) vec4f {\n\
+             return vec4f(f32(at & 1u), f32(at >> 1u), 0.0, 1.0);\n\
+         }\n\
+         @fragment fn flat_color() -> @location(0) vec4f { return vec4f(f32(numbers[0])); }"
+    ), vertex "corner", fragment Some("flat_color"), {
+        0 numbers: Read u32,
     }
 }
 
@@ -98,6 +113,20 @@ fn constants_reach_the_kernel() {
     assert_eq!(count(&gpu, 4, 3).unwrap(), [0, 3, 6, 9]);
     // The same kernel with another constant is another kernel.
     assert_eq!(count(&gpu, 4, 5).unwrap(), [0, 5, 10, 15]);
+}
+
+#[test]
+fn a_device_compiles_each_pipeline_once() {
+    let Some(gpu) = gpu() else { return };
+    let output = |format| Output { color: Some((format, None)), depth: None };
+    let compiled = |factor: f64, format| {
+        Kernel::<Count<'static>>::new(&gpu, &[("FACTOR", factor)]).unwrap();
+        Drawing::<Flat<'static>>::new(&gpu, &output(format), &[]).unwrap();
+        gpu.pipeline_count()
+    };
+    let (one, other) = (wgpu::TextureFormat::Rgba8Unorm, wgpu::TextureFormat::Rgba16Float);
+    assert_eq!([compiled(1.0, one), compiled(1.0, one)], [2, 2]);
+    assert_eq!(compiled(2.0, other), 4, "another constant and another output are others");
 }
 
 #[test]

@@ -33,6 +33,6 @@ pub use influences::Influences;
 pub use outside::Outside;
 pub use rest::RestShape;
 pub use root_ball::RootBall;
-pub use strandline_base::{LANES, Lanes, Vec3Lanes, block_count};
+pub use strandline_base::{LANES, LaneSet, Lanes, Vec3Lanes, block_count};
 pub use style::{Style, StyleSettings};
 pub use ties::Tie;

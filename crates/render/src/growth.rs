@@ -5,7 +5,7 @@ use std::sync::Arc;
 use strandline_body::{BodyFrame, Solids};
 use strandline_groom::{Binding, Guides, Vec3Lanes};
 
-use crate::cpu::strands::bind::{Carried, bind};
+use crate::cpu::strands::bind::{Carried, bind, drawn_points};
 use crate::cpu::{Curves, interpolate, keep_outside, tessellate};
 use crate::strands::Strands;
 use crate::strands::roots::RootTurns;
@@ -48,10 +48,10 @@ impl Growth {
         level: &DetailLevel,
     ) -> &Strands {
         let Self { guides, carried, turns, curves, strands } = self;
-        carried.iter_mut().for_each(|carried| bind(carried, positions, body));
-        let points = carried.as_ref().map_or(positions, Carried::places);
+        carried.iter_mut().for_each(|carried| bind(carried, level.drawn_lanes(), positions, body));
+        let points = drawn_points(carried.as_ref(), positions, guides, level);
         turns.place(body, carried.as_ref().map(Carried::binding), guides.strand_count());
-        tessellate(points, guides, turns, level, curves);
+        tessellate(&points, guides, turns, level, curves);
         interpolate(curves, guides, turns, look, level, strands);
         if let Some(carried) = carried {
             let solids = carried.solids().placed(body);

@@ -1,4 +1,4 @@
-use strandline_base::{Group, settings};
+use strandline_base::{Group, LaneSet, settings};
 
 use crate::{Camera, RenderError};
 
@@ -133,9 +133,9 @@ const EIGHT: f32 = 8.0;
 /// Ranks of eight strands: those of a higher rank are left out first, so that the rest stays evenly spread.
 const RANKS: [f32; 8] = [0.0, 4.0, 2.0, 6.0, 1.0, 5.0, 3.0, 7.0];
 
-/// True if the strands of a guide are drawn when a number of eight are left out.
-pub(crate) fn is_drawn(guide: usize, left_out: f32) -> bool {
-    RANKS[guide % RANKS.len()] < EIGHT - left_out
+/// Of eight guides those whose strands are drawn when a number of them are left out.
+fn drawn_lanes(left_out: f32) -> LaneSet {
+    LaneSet::of(|lane| RANKS[lane] < EIGHT - left_out)
 }
 
 /// Number of strands that represent any larger number: eight of them cross each cell of a grid of light.
@@ -166,11 +166,10 @@ impl EveryFew {
         self.0
     }
 
-    /// True if a strand is one of them, with a number of strands per guide. Eights of guides take turns, so
-    /// that detail that leaves some of eight out leaves as many of these.
+    /// True if strand `index` of a guide is one of them. Eights of guides take turns, so that detail that leaves some of
+    /// eight out leaves as many of these.
     #[inline]
-    pub(crate) fn holds(self, strand: usize, strands_per_guide: usize) -> bool {
-        let (guide, index) = (strand / strands_per_guide, strand % strands_per_guide);
+    pub(crate) fn holds(self, guide: usize, index: usize) -> bool {
         (guide / RANKS.len() + index).is_multiple_of(self.0 as usize)
     }
 }
@@ -199,11 +198,14 @@ impl DetailLevel {
         (self.follow_strands.ceil() as usize).max(1)
     }
 
+    /// Of each eight guides those whose strands are drawn.
+    pub fn drawn_lanes(&self) -> LaneSet {
+        drawn_lanes(self.left_out)
+    }
+
     /// Strands drawn of `guide_count` guides.
     pub fn drawn_strands(&self, guide_count: usize) -> usize {
-        let (eights, rest) = (guide_count / RANKS.len(), guide_count % RANKS.len());
-        let drawn = |guides: usize| (0..guides).filter(|guide| is_drawn(*guide, self.left_out)).count();
-        (eights * drawn(RANKS.len()) + drawn(rest)) * self.strand_count()
+        self.drawn_lanes().count_of(guide_count) * self.strand_count()
     }
 
     /// Width of the strands of a guide, among `guide_count`, as a multiple of that at full detail. The multiples of each
@@ -235,14 +237,18 @@ mod tests {
             let few = EveryFew::of(times * ENOUGH);
             assert_eq!(few.stands_for() as usize, times);
             for left_out in [0.0, 2.5, 7.0] {
-                let drawn = |strand: &usize| is_drawn(strand / per_guide, left_out);
-                let strands: Vec<usize> = (0..32 * 10 * per_guide).filter(drawn).collect();
-                let found = strands.iter().filter(|strand| few.holds(**strand, per_guide)).count();
-                assert_eq!(few.stands_for() as usize * found, strands.len(), "{per_guide}, {left_out}");
+                let lanes = drawn_lanes(left_out);
+                let drawn = lanes.count_of(32 * 10);
+                let held = |index: usize| {
+                    let guide = lanes.strand(index);
+                    (0..per_guide).filter(|index| few.holds(guide, *index)).count()
+                };
+                let found: usize = (0..drawn).map(held).sum();
+                assert_eq!(few.stands_for() as usize * found, drawn * per_guide, "{per_guide}, {left_out}");
             }
         }
         assert_eq!(EveryFew::of(2 * ENOUGH - 1), EveryFew::default());
-        assert!((0..100).all(|strand| EveryFew::default().holds(strand, 3)));
+        assert!((0..100).all(|strand| EveryFew::default().holds(strand / 3, strand % 3)));
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use std::marker::PhantomData;
 
+use super::gpu::Compiled;
 use super::kernel::{as_shader_error, bind_group, layouts, shader_module};
 use crate::{Bindings, Declaration, Gpu, GpuError};
 
@@ -42,8 +43,7 @@ pub struct Output {
 /// A compiled drawing; `B` is the type declared by [`drawing!`](crate::drawing), with a static lifetime.
 #[derive(Debug)]
 pub struct Drawing<B> {
-    pipeline: wgpu::RenderPipeline,
-    layout: wgpu::BindGroupLayout,
+    compiled: Compiled<wgpu::RenderPipeline>,
     bindings: PhantomData<fn(B)>,
 }
 
@@ -55,15 +55,19 @@ pub struct BoundDrawing {
 }
 
 impl<B: Bindings<Kernel = B>> Drawing<B> {
-    /// Compiles a drawing with values for its `override` constants.
+    /// Compiles a drawing with values for its `override` constants; a device compiles each once for an output.
     ///
     /// # Errors
     /// The driver does not take it, or the device was lost.
     pub fn new(gpu: &Gpu, output: &Output, constants: &[(&str, f64)]) -> Result<Self, GpuError> {
         let declaration = B::declaration();
-        let made = gpu.ask(declaration.module, || pipeline(gpu, &declaration, output, constants));
-        let (pipeline, layout) = made.map_err(as_shader_error)?;
-        Ok(Self { pipeline, layout, bindings: PhantomData })
+        let compile = || {
+            let made = gpu.ask(declaration.module, || compiled(gpu, &declaration, output, constants));
+            made.map_err(as_shader_error)
+        };
+        let key = format!("{} {constants:?} {output:?}", declaration.key());
+        let compiled = gpu.drawings().get(key, compile)?;
+        Ok(Self { compiled, bindings: PhantomData })
     }
 
     /// Binds a drawing to its buffers.
@@ -71,17 +75,17 @@ impl<B: Bindings<Kernel = B>> Drawing<B> {
     /// # Errors
     /// A buffer does not fit, or the device was lost.
     pub fn bind<C: Bindings<Kernel = B>>(&self, gpu: &Gpu, buffers: &C) -> Result<BoundDrawing, GpuError> {
-        let group = bind_group(gpu, &self.layout, buffers)?;
-        Ok(BoundDrawing { pipeline: self.pipeline.clone(), group })
+        let group = bind_group(gpu, &self.compiled.layout, buffers)?;
+        Ok(BoundDrawing { pipeline: self.compiled.pipeline.clone(), group })
     }
 }
 
-fn pipeline(
+fn compiled(
     gpu: &Gpu,
     declaration: &Declaration,
     output: &Output,
     constants: &[(&str, f64)],
-) -> (wgpu::RenderPipeline, wgpu::BindGroupLayout) {
+) -> Compiled<wgpu::RenderPipeline> {
     let device = gpu.device();
     let (layout, pipeline_layout) = layouts(device, declaration);
     let module = &shader_module(device, declaration);
@@ -111,5 +115,5 @@ fn pipeline(
         multiview_mask: None,
         cache: None,
     });
-    (pipeline, layout)
+    Compiled { pipeline, layout }
 }

@@ -29,14 +29,45 @@ struct Shared {
     waits: AtomicU64,
     /// True where the host never waits for the device.
     never_waits: AtomicBool,
-    kernels: Mutex<HashMap<String, Compiled>>,
+    kernels: Pipelines<wgpu::ComputePipeline>,
+    drawings: Pipelines<wgpu::RenderPipeline>,
 }
 
-/// A compiled kernel, kept for later requests of the same.
+/// A compiled kernel or drawing.
 #[derive(Clone, Debug)]
-pub(crate) struct Compiled {
-    pub pipeline: wgpu::ComputePipeline,
+pub(crate) struct Compiled<P> {
+    pub pipeline: P,
     pub layout: wgpu::BindGroupLayout,
+}
+
+/// Compiled kernels or drawings, kept for later requests of the same.
+#[derive(Debug)]
+pub(crate) struct Pipelines<P>(Mutex<HashMap<String, Compiled<P>>>);
+
+impl<P> Default for Pipelines<P> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+impl<P: Clone> Pipelines<P> {
+    fn count(&self) -> usize {
+        lock(&self.0).len()
+    }
+
+    /// That of a key, compiled at its first use.
+    pub fn get(
+        &self,
+        key: String,
+        compile: impl FnOnce() -> Result<Compiled<P>, GpuError>,
+    ) -> Result<Compiled<P>, GpuError> {
+        if let Some(known) = lock(&self.0).get(&key) {
+            return Ok(known.clone());
+        }
+        let compiled = compile()?;
+        lock(&self.0).insert(key, compiled.clone());
+        Ok(compiled)
+    }
 }
 
 /// Allocated bytes, and the limit.
@@ -105,7 +136,7 @@ impl Gpu {
 
     fn new(device: wgpu::Device, queue: wgpu::Queue, adapter: Adapter, errors: Arc<Errors>) -> Self {
         let memory = Mutex::new(Memory { used: 0, most: u64::MAX });
-        let (crossed, waits, kernels) = Default::default();
+        let (crossed, waits, kernels, drawings) = Default::default();
         // A page cannot wait.
         let never_waits = AtomicBool::new(cfg!(target_family = "wasm"));
         Self {
@@ -119,6 +150,7 @@ impl Gpu {
                 waits,
                 never_waits,
                 kernels,
+                drawings,
             }),
         }
     }
@@ -335,18 +367,19 @@ impl Gpu {
         Ok(())
     }
 
-    /// The kernel of a key, compiled at its first use.
-    pub(crate) fn kernel(
-        &self,
-        key: String,
-        compile: impl FnOnce() -> Result<Compiled, GpuError>,
-    ) -> Result<Compiled, GpuError> {
-        if let Some(kernel) = lock(&self.shared.kernels).get(&key) {
-            return Ok(kernel.clone());
-        }
-        let kernel = compile()?;
-        lock(&self.shared.kernels).insert(key, kernel.clone());
-        Ok(kernel)
+    /// Number of kernels and drawings that were compiled.
+    pub fn pipeline_count(&self) -> usize {
+        self.shared.kernels.count() + self.shared.drawings.count()
+    }
+
+    /// Kernels that were compiled.
+    pub(crate) fn kernels(&self) -> &Pipelines<wgpu::ComputePipeline> {
+        &self.shared.kernels
+    }
+
+    /// Drawings that were compiled.
+    pub(crate) fn drawings(&self) -> &Pipelines<wgpu::RenderPipeline> {
+        &self.shared.drawings
     }
 
     pub(crate) fn give_memory_back(&self, bytes: u64) {

@@ -52,6 +52,14 @@ pub struct Declaration {
     pub bindings: Vec<Binding>,
 }
 
+impl Declaration {
+    /// A text that no other declaration has.
+    pub(crate) fn key(&self) -> String {
+        // The source is static: its place stands for it.
+        format!("{:p} {} {:?}", self.source, self.entry, self.fragment)
+    }
+}
+
 /// The buffers of a kernel. [`kernel!`](crate::kernel) makes them.
 pub trait Bindings {
     /// The kernel, for any lifetime of its buffers.
@@ -171,7 +179,7 @@ macro_rules! kernel {
 /// A compiled kernel; `B` is the type declared by [`kernel!`](crate::kernel), with a static lifetime.
 #[derive(Debug)]
 pub struct Kernel<B> {
-    compiled: Compiled,
+    compiled: Compiled<wgpu::ComputePipeline>,
     bindings: PhantomData<fn(B)>,
 }
 
@@ -182,9 +190,8 @@ impl<B: Bindings<Kernel = B>> Kernel<B> {
     /// The driver does not take it, or the device was lost.
     pub fn new(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Self, GpuError> {
         let declaration = B::declaration();
-        // The text is static: its place stands for it.
-        let key = format!("{:p} {} {constants:?}", declaration.source, declaration.entry);
-        let compiled = gpu.kernel(key, || compile(gpu, &declaration, constants))?;
+        let key = format!("{} {constants:?}", declaration.key());
+        let compiled = gpu.kernels().get(key, || compile(gpu, &declaration, constants))?;
         Ok(Self { compiled, bindings: PhantomData })
     }
 
@@ -198,7 +205,11 @@ impl<B: Bindings<Kernel = B>> Kernel<B> {
     }
 }
 
-fn compile(gpu: &Gpu, declaration: &Declaration, constants: &[(&str, f64)]) -> Result<Compiled, GpuError> {
+fn compile(
+    gpu: &Gpu,
+    declaration: &Declaration,
+    constants: &[(&str, f64)],
+) -> Result<Compiled<wgpu::ComputePipeline>, GpuError> {
     let Declaration { module, entry, .. } = declaration;
     let made = gpu.ask(module, || {
         let device = gpu.device();

@@ -24,15 +24,22 @@ pub(super) struct Followed {
     pub(super) paces: [f32; LANES],
 }
 
+impl Followed {
+    /// Of the strands of a block, one of the influences of each.
+    pub(super) fn of(influences: [Influence; LANES]) -> Self {
+        Self {
+            guides: influences.map(|one| one.guide),
+            weights: influences.map(|one| one.weight),
+            paces: influences.map(|one| one.pace),
+        }
+    }
+}
+
 /// Influences as lanes; lanes beyond the last strand repeat it.
 pub(super) fn blocks(influences: &[[Influence; MOST_INFLUENCES]]) -> Vec<[Followed; MOST_INFLUENCES]> {
     let followed = |block: usize, slot: usize| {
         let of = |lane: usize| influences[(block * LANES + lane).min(influences.len() - 1)][slot];
-        Followed {
-            guides: std::array::from_fn(|lane| of(lane).guide),
-            weights: std::array::from_fn(|lane| of(lane).weight),
-            paces: std::array::from_fn(|lane| of(lane).pace),
-        }
+        Followed::of(std::array::from_fn(of))
     };
     let blocks = 0..block_count(influences.len());
     blocks.map(|block| std::array::from_fn(|slot| followed(block, slot))).collect()

@@ -9,14 +9,15 @@ use wide::f32x8;
 use super::frames::{Frame, Frames};
 use super::influence::{Followed, MOST_INFLUENCES};
 use super::{Binding, Surface};
-use crate::{LANES, Vec3Lanes, outside::placed_outside};
+use crate::{LANES, LaneSet, Vec3Lanes, block_count, outside::placed_outside};
 
 impl Binding {
-    /// Fills `out` with the points of all strands \[m\], world space, shape `[block][point]` of lanes, given those of
-    /// the guides in the same shape: [`Binding::follow`], then [`Binding::place`] out of solids. `frames` is used
+    /// Fills `out` with the points of the strands of a set \[m\], world space, shape `[block][point]` of lanes, given those
+    /// of all guides in the same shape: [`Binding::follow`], then [`Binding::place`] out of solids. `frames` is used
     /// again from call to call.
     pub fn carry(
         &self,
+        set: LaneSet,
         guides: &[Vec3Lanes],
         body: &BodyFrame,
         solids: &Solids,
@@ -29,15 +30,16 @@ impl Binding {
         let surface = Surface { at: &at, at_least: &at_least };
         let surface = (!placed.is_empty()).then_some(&surface);
         self.follow(guides, body, frames);
-        self.place(frames, body, surface, out);
+        self.place(set, frames, body, surface, out);
     }
 
-    /// Positions of all strands \[m\], world space, shape `[block][point]` of lanes, from the frames of the
+    /// Positions of the strands of a set \[m\], world space, shape `[block][point]` of lanes, from the frames of the
     /// guides ([`Binding::follow`]). Roots move with the head, or with the guides of their strands where these have
     /// root frames of their own. Segments have their rest lengths, scaled as those of the guides are. Points inside the
     /// body are put onto its surface.
     pub fn place(
         &self,
+        set: LaneSet,
         frames: &Frames,
         body: &BodyFrame,
         surface: Option<&Surface>,
@@ -46,11 +48,34 @@ impl Binding {
         let count = self.strands.points_per_strand();
         let turn = Rigid::new(&body.world_from_head());
         let rides = body.roots().is_none();
-        out.resize(self.strands.positions().len(), Vec3Lanes::default());
-        let blocks = out.par_chunks_mut(count).zip_eq(self.strands.positions().par_chunks(count));
-        blocks.zip_eq(&self.blocks).for_each(|((places, rest), followed)| {
-            place_block(rest, followed, frames, (&turn, rides), surface, places);
+        let strand_count = set.count_of(self.strands.strand_count());
+        out.resize(block_count(strand_count) * count, Vec3Lanes::default());
+        if set.is_all() {
+            let blocks = out.par_chunks_mut(count).zip_eq(self.strands.positions().par_chunks(count));
+            blocks.zip_eq(&self.blocks).for_each(|((places, rest), followed)| {
+                place_block(rest, followed, frames, (&turn, rides), surface, places);
+            });
+            return;
+        }
+        out.par_chunks_mut(count).enumerate().for_each_init(Vec::new, |rest, (block, places)| {
+            let strands =
+                std::array::from_fn(|lane| set.strand((block * LANES + lane).min(strand_count - 1)));
+            let followed = self.gathered(&strands, rest);
+            place_block(rest, &followed, frames, (&turn, rides), surface, places);
         });
+    }
+
+    /// A block of any strands: the guides that they follow, and their points at rest \[m\], shape `[point]`.
+    fn gathered(&self, strands: &[usize; LANES], rest: &mut Vec<Vec3Lanes>) -> [Followed; MOST_INFLUENCES] {
+        let count = self.strands.points_per_strand();
+        rest.resize(count, Vec3Lanes::default());
+        for (lane, strand) in strands.iter().enumerate() {
+            let of_strand = &self.strands.positions()[strand / LANES * count..][..count];
+            rest.iter_mut()
+                .zip(of_strand)
+                .for_each(|(rest, point)| rest.set(lane, point.get(strand % LANES)));
+        }
+        std::array::from_fn(|slot| Followed::of(strands.map(|strand| self.influences[strand][slot])))
     }
 }
 

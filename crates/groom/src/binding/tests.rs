@@ -1,7 +1,7 @@
 use strandline_body::Pose;
 
 use super::*;
-use crate::Influences;
+use crate::{Influences, LaneSet};
 
 const POINTS: usize = 8;
 
@@ -27,7 +27,7 @@ fn bound(groom: &Groom, guides: &[usize]) -> Binding {
 fn places(binding: &Binding, positions: &[Vec3Lanes], pose: &BodyFrame) -> Vec<Vec3Lanes> {
     let (mut frames, mut out) = (Frames::default(), Vec::new());
     binding.follow(positions, pose, &mut frames);
-    binding.place(&frames, pose, None, &mut out);
+    binding.place(LaneSet::ALL, &frames, pose, None, &mut out);
     out
 }
 
@@ -55,6 +55,22 @@ fn a_groom_at_rest_is_itself_wherever_the_head_is() {
     }
     // Rounding of places of two metres; the bound that is promised is 1e-4 m.
     assert!(worst < 3e-6, "{worst} m");
+}
+
+#[test]
+fn strands_of_a_set_lie_where_they_lie_among_all() {
+    let groom = groom();
+    let binding = bound(&groom, &groom.representatives(30));
+    let positions =
+        moved(binding.guides(), |point| Vec3::new(point.x + 3.0 * point.y * point.y, point.y, point.z));
+    let all = places(&binding, &positions, &BodyFrame::REST);
+    let mut frames = Frames::default();
+    binding.follow(&positions, &BodyFrame::REST, &mut frames);
+    for set in [LaneSet::of(|lane| lane == 5), LaneSet::of(|lane| lane % 3 == 0)] {
+        let mut some = Vec::new();
+        binding.place(set, &frames, &BodyFrame::REST, None, &mut some);
+        assert_eq!(some, set.taken(&all, groom.strand_count(), POINTS));
+    }
 }
 
 #[test]
@@ -121,7 +137,7 @@ fn points_come_out_of_the_body() {
     let deep = |surface_of: Option<&Surface>| {
         let (mut frames, mut out) = (Frames::default(), Vec::new());
         binding.follow(&sunk, &BodyFrame::REST, &mut frames);
-        binding.place(&frames, &BodyFrame::REST, surface_of, &mut out);
+        binding.place(LaneSet::ALL, &frames, &BodyFrame::REST, surface_of, &mut out);
         let place = |strand: usize, point: usize| out[strand / LANES * POINTS + point].get(strand % LANES);
         let strands = (0..groom.strand_count()).filter(|strand| surface(place(*strand, 0)).0 >= 0.0);
         strands

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use glam::Vec3;
 use strandline_body::BodyFrame;
-use strandline_groom::{Binding, Frames, Groom, Guides, LANES, Surface};
+use strandline_groom::{Binding, Frames, Groom, Guides, LANES, LaneSet, Surface};
 
 fn bound(groom: &Groom, count: usize, points: usize) -> Binding {
     let chosen = groom.representatives(count);
@@ -29,7 +29,7 @@ fn sintel_at_rest_is_the_groom() {
     assert!((1900..=2000).contains(&binding.guides().strand_count()));
     let (mut frames, mut places) = (Frames::default(), Vec::new());
     binding.follow(binding.guides().positions(), &BodyFrame::REST, &mut frames);
-    binding.place(&frames, &BodyFrame::REST, None, &mut places);
+    binding.place(LaneSet::ALL, &frames, &BodyFrame::REST, None, &mut places);
     let mut worst = 0.0_f32;
     for strand in 0..groom.strand_count() {
         for point in 0..16 {
@@ -78,7 +78,13 @@ fn a_hundred_thousand_strands_are_placed() {
         let (begin, before) = (Instant::now(), processor_ms());
         for _ in 0..RUNS {
             binding.follow(&positions, &BodyFrame::REST, &mut frames);
-            binding.place(&frames, &BodyFrame::REST, body.then_some(&Surface::of(&surface)), &mut places);
+            binding.place(
+                LaneSet::ALL,
+                &frames,
+                &BodyFrame::REST,
+                body.then_some(&Surface::of(&surface)),
+                &mut places,
+            );
         }
         let wall = begin.elapsed().as_secs_f64() * 1e3 / f64::from(RUNS);
         let used = processor_ms().zip(before).map(|(after, before)| (after - before) / f64::from(RUNS));

@@ -72,14 +72,57 @@ mod tests {
     use super::*;
     use crate::{BodyLook, Camera, LevelOfDetail, Light, Look};
 
+    /// A renderer of 64x64 channels, and the strands it draws.
+    fn renderer(groom: &Groom) -> (Renderer, Guides) {
+        let guides = Guides::resample(groom, 8).unwrap();
+        let settings = PictureSettings { layers: true, ..PictureSettings::sized(64, 64) };
+        (Renderer::new(&guides, None, &settings).unwrap(), guides)
+    }
+
+    /// The values of a channel.
+    fn channel<'a>(layers: &'a Layers, name: &str) -> &'a [f32] {
+        &layers.channels.iter().find(|(own, _)| own == name).unwrap().1
+    }
+
+    #[test]
+    fn strands_keep_their_numbers_where_some_are_left_out() {
+        // Sixteen strands beside each other, 1 mm wide, of which six of eight are left out.
+        let mut groom = Groom::empty(0.001);
+        let strand = |x: f32| (0..8).map(move |point| Vec3::new(x, 0.02 * point as f32 - 0.07, 0.0));
+        (0..16).for_each(|index| groom.push(strand(0.01 * index as f32 - 0.075)));
+        let (mut renderer, guides) = renderer(&groom);
+        let look = Look { follow_strands: 1, hair_count: 0, tip_width: 1.0, ..Look::brown() };
+        let camera = Camera { position: Vec3::Z * 0.5, target: Vec3::ZERO, ..Camera::front() };
+        let few = LevelOfDetail { full_distance: 1e-3, least_strands: 0.25, ..LevelOfDetail::default() };
+        let input = FrameInput {
+            positions: guides.positions(),
+            body: &BodyFrame::REST,
+            camera: &camera,
+            look: &look,
+            body_look: &BodyLook::default(),
+            lights: &[Light::default()],
+            level_of_detail: &few,
+        };
+        let (_, report) = renderer.draw(&input).unwrap();
+        assert_eq!(report.strands, 4);
+        let layers = report.layers.unwrap();
+        let numbers = channel(&layers, "strand.id").iter().map(|id| *id as usize).filter(|id| *id > 0);
+        let found: std::collections::BTreeSet<usize> = numbers.collect();
+        // Counted from 1: strands 0 and 4 of each eight.
+        assert_eq!(found.into_iter().collect::<Vec<_>>(), [1, 5, 9, 13]);
+        // Four strands lie 4 cm apart, of 27 cm that the picture is wide; each is 4 mm wide, a pixel.
+        let column = |id: f32| channel(&layers, "strand.id").iter().position(|own| *own == id).unwrap() % 64;
+        let apart = [5.0, 9.0, 13.0].map(|id| column(id) as f32 - column(1.0) as f32);
+        let wanted = [0.04, 0.08, 0.12].map(|x: f32| 64.0 * x / 0.268);
+        assert!(apart.iter().zip(wanted).all(|(one, other)| (one - other).abs() < 2.0), "{apart:?}");
+    }
+
     #[test]
     fn channels_say_what_a_strand_before_nothing_is() {
         // One strand, 5 cm wide, straight up in the middle, half a metre before the eye.
         let mut groom = Groom::empty(0.05);
         groom.push((0..8).map(|point| Vec3::Y * (0.02 * point as f32 - 0.07)));
-        let guides = Guides::resample(&groom, 8).unwrap();
-        let settings = PictureSettings { layers: true, ..PictureSettings::sized(64, 64) };
-        let mut renderer = Renderer::new(&guides, None, &settings).unwrap();
+        let (mut renderer, guides) = renderer(&groom);
         let look = Look { follow_strands: 1, hair_count: 0, tip_width: 1.0, ..Look::brown() };
         let camera = Camera { position: Vec3::Z * 0.5, target: Vec3::ZERO, ..Camera::front() };
         let input = FrameInput {
@@ -93,9 +136,7 @@ mod tests {
         };
         let (_, report) = renderer.draw(&input).unwrap();
         let layers = report.layers.unwrap();
-        let of = |name: &str, at: usize| {
-            layers.channels.iter().find(|(own, _)| own == name).map(|(_, values)| values[at]).unwrap()
-        };
+        let of = |name: &str, at: usize| channel(&layers, name)[at];
         let (middle, corner) = (32 * 64 + 32, 0);
         assert!((of("mask.hair", middle) - 1.0).abs() < 1e-3, "{}", of("mask.hair", middle));
         assert!((of("depth.Z", middle) - 0.5).abs() < 1e-3, "{}", of("depth.Z", middle));

@@ -5,7 +5,7 @@ use strandline_body::{Aabb, Mesh};
 use strandline_groom::Guides;
 
 use super::shade::skin::Skin;
-use super::strands::bind::{Carried, bind};
+use super::strands::bind::{Carried, bind, drawn_points};
 use super::{
     Curves, Draw, DrawInput, Found, Lit, Occlusion, Radiances, Resolve, Scattering, Scheuermann, Seen,
     Shading, interpolate, keep_outside, layer_colors, opacity_depth, opacity_layers, tessellate,
@@ -84,11 +84,14 @@ impl Frame<'_> {
         let Self { settings, input, level, picture, .. } = self;
         let Scratch { guides, carried, turns, curves, strands, shadows, .. } = &mut *self.scratch;
         match stage {
-            Stage::Bind => carried.iter_mut().for_each(|carried| bind(carried, input.positions, input.body)),
+            Stage::Bind => {
+                let bind = |carried| bind(carried, level.drawn_lanes(), input.positions, input.body);
+                carried.iter_mut().for_each(bind);
+            }
             Stage::Tessellate => {
-                let points = carried.as_ref().map_or(input.positions, |carried| carried.places());
+                let points = drawn_points(carried.as_ref(), input.positions, guides, level);
                 turns.place(input.body, carried.as_ref().map(Carried::binding), guides.strand_count());
-                tessellate(points, guides, turns, level, curves);
+                tessellate(&points, guides, turns, level, curves);
             }
             Stage::Interpolate => {
                 interpolate(curves, guides, turns, input.look, level, strands);

@@ -29,7 +29,7 @@ pub(crate) fn body_depths(samples: &Samples, scale: usize) -> Vec<f32> {
     (0..width * height).map(nearest).map(|inverse| if inverse > 0.0 { 1.0 / inverse } else { 0.0 }).collect()
 }
 
-/// Number of the nearest strand, from 1, in every pixel of `scale` samples a side; 0 without one, or where the body hides
+/// Number of the nearest strand among all of the groom, from 1, in every pixel of `scale` samples a side; 0 without one, or where the body hides
 /// it. Strands count as lines.
 pub(crate) fn nearest_strands(
     strands: &Strands,
@@ -42,6 +42,10 @@ pub(crate) fn nearest_strands(
     // One over the depth, and the strand.
     let mut nearest = vec![(0.0_f32, 0.0_f32); width * height];
     let count = strands.points_per_strand;
+    let number = |strand: usize| {
+        let (guide, index) = strands.place(strand);
+        (guide * strands.strands_per_guide + index + 1) as f32
+    };
     for segment in 0..strands.strand_count * count.saturating_sub(1) {
         let (strand, at) = (segment / (count - 1), segment % (count - 1));
         let point = strand * count + at;
@@ -62,7 +66,7 @@ pub(crate) fn nearest_strands(
             if column < width && row < height {
                 let known = &mut nearest[row * width + column];
                 if place.z > known.0 && place.z >= samples.inverse_depths[samples.index(x, y)] {
-                    *known = (place.z, (strand + 1) as f32);
+                    *known = (place.z, number(strand));
                 }
             }
         }

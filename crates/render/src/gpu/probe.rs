@@ -14,7 +14,7 @@ use crate::shadow::{LightView, ShadowMap, Shadows, Window};
 use crate::strands::Strands;
 use crate::{DetailLevel, FrameInput, Light, Picture, RenderError, Shadow};
 
-fn vectors(values: &[[f32; 4]]) -> Vec<Vec3> {
+pub(super) fn vectors(values: &[[f32; 4]]) -> Vec<Vec3> {
     values.iter().map(|&[x, y, z, _]| Vec3::new(x, y, z)).collect()
 }
 
@@ -63,20 +63,35 @@ impl GpuRenderer {
     /// # Panics
     /// Nothing was drawn yet.
     pub fn strands(&self) -> Result<Strands, RenderError> {
-        let mut strands = Strands::default();
-        let drawn = self.drawn;
-        strands.resize(self.guides.strand_count(), drawn.strands_per_guide, drawn.curve_points);
-        strands.left_out = drawn.left_out;
-        let count = strands.positions.len();
-        let points = Self::first(&self.room().points, count)?;
-        strands.positions = vectors(&points);
-        strands.widths = points.iter().map(|point| point[3]).collect();
-        strands.radiances = Self::first(&self.room().radiances, count)?
-            .into_iter()
+        let points = self.points()?;
+        let radiances = Self::first(&self.room().radiances, points.len())?;
+        let mut strands = self.drawn_of(&points);
+        let place = |index| self.drawn.place(index);
+        strands.radiances = (0..strands.positions.len())
+            .map(|index| radiances[place(index)])
             .map(|[xy, z]| Vec3::new(from_half(xy), from_half(xy >> 16), from_half(z)))
             .collect();
-        strands.tangents.clear();
         Ok(strands)
+    }
+
+    /// Points \[m\] and widths \[m\] of the last frame as the device has them, also those of guides that are left out.
+    pub(super) fn points(&self) -> Result<Vec<[f32; 4]>, RenderError> {
+        let per_guide = self.drawn.strands_per_guide * self.drawn.curve_points;
+        Self::first(&self.room().points, self.guides.strand_count() * per_guide)
+    }
+
+    /// The strands that are drawn, without tangents and light, from all points of the device.
+    pub(super) fn drawn_of(&self, points: &[[f32; 4]]) -> Strands {
+        let (drawn, mut strands) = (self.drawn, Strands::default());
+        let guides = drawn.lanes.count_of(self.guides.strand_count());
+        strands.resize(guides, drawn.strands_per_guide, drawn.curve_points);
+        strands.lanes = drawn.lanes;
+        let own = (0..strands.positions.len()).map(|index| points[drawn.place(index)]).collect::<Vec<_>>();
+        strands.positions = vectors(&own);
+        strands.widths = own.iter().map(|point| point[3]).collect();
+        strands.radiances.clear();
+        strands.tangents.clear();
+        strands
     }
 
     /// The deep opacity map of shadow light number `slot` of the last frame: hairs crossed in three

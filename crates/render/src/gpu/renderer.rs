@@ -4,7 +4,7 @@ use glam::Vec3;
 use strandline_base::SettingError;
 use strandline_body::{Aabb, Mesh, Solids};
 use strandline_gpu::{Buffer, Gpu, Recorder, Timer, wgpu};
-use strandline_groom::{Binding, Guides};
+use strandline_groom::{Binding, Guides, LaneSet};
 
 use super::buffers::{Groom, MAX_POINTS, Maps, Strands, Targets, floats};
 use super::channel_state::Channels;
@@ -58,9 +58,18 @@ pub struct GpuRenderer {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Drawn {
     pub strands_per_guide: usize,
-    pub left_out: f32,
+    /// Of each eight guides those whose strands are drawn; the device has room for all.
+    pub lanes: LaneSet,
     pub curve_points: usize,
     pub shadows: usize,
+}
+
+impl Drawn {
+    /// Place on the device of a point of the drawn strands.
+    pub fn place(&self, index: usize) -> usize {
+        let per_guide = self.strands_per_guide * self.curve_points;
+        self.lanes.strand(index / per_guide) * per_guide + index % per_guide
+    }
 }
 
 impl GpuRenderer {
@@ -277,7 +286,7 @@ impl GpuRenderer {
             strands_per_guide: scene.level.strand_count(),
             curve_points: scene.curve_points(),
             shadows: scene.shadow_count(),
-            left_out: scene.level.left_out,
+            lanes: scene.level.drawn_lanes(),
         };
         self.lit.0.clear();
         self.lit.0.extend_from_slice(scene.input.lights);

@@ -7,10 +7,10 @@ pub(crate) mod scalp;
 
 use glam::Vec3;
 use strandline_base::SettingError;
-use strandline_groom::{Binding, Guides};
+use strandline_groom::{Binding, Guides, LaneSet};
 
 use crate::RenderError;
-use crate::level_of_detail::{EveryFew, is_drawn};
+use crate::level_of_detail::EveryFew;
 
 /// Checks that the strands of a binding have the numbers of those of a renderer.
 pub(crate) fn check_strands(strands: &Guides, binding: &Binding) -> Result<(), RenderError> {
@@ -32,8 +32,8 @@ pub struct Strands {
     pub strands_per_guide: usize,
     /// Strands that there are at full detail.
     pub full_count: usize,
-    /// Of each eight guides, those whose strands are not drawn ([`crate::DetailLevel::left_out`]).
-    pub left_out: f32,
+    /// Of each eight guides those whose strands are drawn ([`crate::DetailLevel::drawn_lanes`]); the others have none here.
+    pub lanes: LaneSet,
     /// Points on each strand, one more than its segments.
     pub points_per_strand: usize,
     /// Positions \[m\], world space.
@@ -42,21 +42,32 @@ pub struct Strands {
     pub tangents: Vec<Vec3>,
     /// Diameters \[m\], after taper and level of detail.
     pub widths: Vec<f32>,
-    /// Colours of the groom, linear RGB, shape `[guide][point]`; empty where it has none.
+    /// Colours of the groom, linear RGB, shape `[guide][point]` of the drawn guides; empty where it has none.
     pub colors: Vec<Vec3>,
     /// Radiance toward the camera, linear RGB; filled by `shade`. A renderer finds it where it is seen instead.
     pub radiances: Vec<Vec3>,
 }
 
 impl Strands {
-    /// True if a strand is drawn: from afar some strands without follow strands are left out.
-    pub fn is_drawn(&self, strand: usize) -> bool {
-        is_drawn(strand / self.strands_per_guide, self.left_out)
+    /// The guide of a strand among all guides, and the number of the strand among those of the guide: from afar some
+    /// strands without follow strands are left out.
+    #[inline]
+    pub fn place(&self, strand: usize) -> (usize, usize) {
+        (self.lanes.strand(strand / self.strands_per_guide), strand % self.strands_per_guide)
     }
 
-    /// True if a strand is drawn and belongs to those that stand for all.
+    /// Colours of the groom at the points of a strand, where it has some.
+    #[inline]
+    pub(crate) fn own_colors(&self, strand: usize) -> Option<&[Vec3]> {
+        let (guide, count) = (strand / self.strands_per_guide, self.points_per_strand);
+        self.colors.get(guide * count..(guide + 1) * count)
+    }
+
+    /// True if a strand belongs to those that stand for all.
+    #[inline]
     pub(crate) fn is_one_of(&self, strand: usize, few: EveryFew) -> bool {
-        self.is_drawn(strand) && few.holds(strand, self.strands_per_guide)
+        let (guide, index) = self.place(strand);
+        few.holds(guide, index)
     }
 
     /// Number of segments of all strands.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::{
     body::{BodyFrame, Collider, Solids},
-    groom::{Binding, Frames, Guides, Vec3Lanes},
+    groom::{Binding, Frames, Guides, LaneSet, Vec3Lanes},
 };
 
 /// All strands of a groom, bound to the simulated ones among them, and the solids that they stay out of.
@@ -54,7 +54,7 @@ impl BoundStrands {
         frames: &mut Frames,
         out: &mut Vec<Vec3Lanes>,
     ) {
-        self.binding.carry(guides, body, &self.solids, frames, out);
+        self.binding.carry(LaneSet::ALL, guides, body, &self.solids, frames, out);
     }
 
     /// The solids that strands stay out of.

@@ -213,9 +213,6 @@ impl Run {
         let per_strand = strands.points_per_strand;
         for (strand, points) in points.chunks_exact(per_strand).enumerate() {
             let start = first + strand * per_strand;
-            if !strands.is_drawn(start / per_strand) {
-                continue;
-            }
             self.strand(points, start, occluders);
             if points.iter().any(|point| point.z == 0.0) {
                 self.cut(points, start, strands, projection);

@@ -83,8 +83,7 @@ pub(crate) fn lightness(
     lattice: &Lattice,
     found: &mut Vec<Vec<f32>>,
 ) {
-    let Strands { points_per_strand: count, strands_per_guide: of_guide, colors, .. } = strands;
-    let (count, of_guide) = (*count, *of_guide);
+    let count = strands.points_per_strand;
     let of_look = [1.0, WHITE].map(|darker| -> Vec<Vec3> {
         let share = |index: usize| index as f32 / (count - 1) as f32;
         let pigment = |index: usize| match pigments(look, None, darker, index, share(index)) {
@@ -97,21 +96,18 @@ pub(crate) fn lightness(
     found.resize_with(3, Vec::new);
     for (channel, found) in found.iter_mut().enumerate() {
         found.resize(strands.positions.len(), 0.0);
-        found.par_chunks_mut(count * of_guide).enumerate().for_each(|(guide, found)| {
-            let own = colors.get(guide * count..(guide + 1) * count);
-            let is_summed =
-                |(index, _): &(usize, &mut [f32])| summed.holds(guide * of_guide + index, of_guide);
-            for (index, found) in found.chunks_mut(count).enumerate().filter(is_summed) {
-                match own {
-                    Some(own) => {
-                        let both = found.iter_mut().zip(own);
-                        both.for_each(|(found, color)| *found = by_color.at(*color, channel));
-                    }
-                    None => {
-                        let white = Chance::new(look, guide as u32, index as u32).white;
-                        let row = &of_look[usize::from(white)];
-                        found.iter_mut().zip(row).for_each(|(found, light)| *found = light[channel]);
-                    }
+        let is_summed = |(strand, _): &(usize, &mut [f32])| strands.is_one_of(*strand, summed);
+        found.par_chunks_mut(count).enumerate().filter(is_summed).for_each(|(strand, found)| {
+            match strands.own_colors(strand) {
+                Some(own) => {
+                    let both = found.iter_mut().zip(own);
+                    both.for_each(|(found, color)| *found = by_color.at(*color, channel));
+                }
+                None => {
+                    let (guide, index) = strands.place(strand);
+                    let white = Chance::new(look, guide as u32, index as u32).white;
+                    let row = &of_look[usize::from(white)];
+                    found.iter_mut().zip(row).for_each(|(found, light)| *found = light[channel]);
                 }
             }
         });

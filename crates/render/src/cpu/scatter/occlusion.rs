@@ -151,8 +151,7 @@ impl Occlusion {
         self.parts.par_iter_mut().enumerate().for_each(|(part, areas)| {
             refill(areas, cells, 0);
             let range = strands.strand_count * part / PARTS..strands.strand_count * (part + 1) / PARTS;
-            let drawn = range.filter(|strand| strands.is_drawn(*strand));
-            for segment in drawn.flat_map(|strand| strand * count..(strand + 1) * count - 1) {
+            for segment in range.flat_map(|strand| strand * count..(strand + 1) * count - 1) {
                 let end = |point: usize| (strands.positions[point], strands.widths[point]);
                 grid.spread(end(segment), end(segment + 1), areas);
             }

@@ -155,11 +155,10 @@ pub(crate) struct Scheuermann<'a> {
 
 impl Shading for Scheuermann<'_> {
     fn fill(&self, strand: usize, first: usize, radiances: &mut [Vec3]) {
-        let Strands { positions, tangents, colors, points_per_strand: count, .. } = self.strands;
-        let (guide, index) =
-            (strand / self.strands.strands_per_guide, strand % self.strands.strands_per_guide);
+        let Strands { positions, tangents, points_per_strand: count, .. } = self.strands;
+        let (guide, index) = self.strands.place(strand);
         let color = StrandColor::new(self.look, guide as u32, index as u32);
-        let own = colors.get(guide * count..(guide + 1) * count).filter(|own| !own.is_empty());
+        let own = self.strands.own_colors(strand);
         let of_strand = strand * count..(strand + 1) * count;
         let (positions, tangents) = (&positions[of_strand.clone()], &tangents[of_strand]);
         let radiance = self.radiance(&Points::load(positions, tangents, first, &color, own));

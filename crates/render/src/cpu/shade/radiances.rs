@@ -21,8 +21,7 @@ pub trait Shading: Sync {
 pub(crate) fn fill_all(strands: &Strands, shading: &dyn Shading, radiances: &mut Vec<Vec3>) {
     let count = strands.points_per_strand;
     radiances.resize(strands.positions.len(), Vec3::ZERO);
-    let drawn = |(strand, _): &(usize, &mut [Vec3])| strands.is_drawn(*strand);
-    radiances.par_chunks_mut(count).enumerate().filter(drawn).for_each(|(strand, radiances)| {
+    radiances.par_chunks_mut(count).enumerate().for_each(|(strand, radiances)| {
         for (run, radiances) in radiances.chunks_mut(RUN).enumerate() {
             shading.fill(strand, RUN * run, radiances);
         }

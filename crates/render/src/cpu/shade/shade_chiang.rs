@@ -211,11 +211,9 @@ pub(crate) struct ChiangShading<'a> {
 
 impl Shading for ChiangShading<'_> {
     fn fill(&self, strand: usize, first: usize, radiances: &mut [Vec3]) {
-        let Strands { colors, points_per_strand: count, strands_per_guide, .. } = self.strands;
-        let (guide, index) = (strand / strands_per_guide, strand % strands_per_guide);
-        let own = colors.get(guide * count..(guide + 1) * count);
-        let own = Strand::new(self.lit.look, own, guide as u32, index as u32);
-        let known = self.summed.holds(strand, *strands_per_guide);
+        let ((guide, index), count) = (self.strands.place(strand), self.strands.points_per_strand);
+        let own = Strand::new(self.lit.look, self.strands.own_colors(strand), guide as u32, index as u32);
+        let known = self.summed.holds(guide, index);
         for (index, radiance) in (first..).zip(radiances) {
             *radiance = self.radiance(&own, strand * count + index, index, known);
         }

@@ -72,7 +72,7 @@ pub(crate) fn walk(
     mut take: impl FnMut(Piece),
 ) {
     let count = strands.points_per_strand;
-    for strand in range.filter(|strand| strands.is_drawn(*strand)) {
+    for strand in range {
         let points = strand * count..(strand + 1) * count;
         let mut last: Option<(Vec3, f32)> = None;
         for (&position, &width) in strands.positions[points.clone()].iter().zip(&strands.widths[points]) {

@@ -34,8 +34,8 @@ pub fn interpolate(
     let strands_per_guide = level.strand_count();
     let points_per_strand = curves.points_per_curve;
     out.resize(curves.guide_count, strands_per_guide, points_per_strand);
-    out.left_out = level.left_out;
-    out.full_count = curves.guide_count * level.full_follow_strands as usize;
+    out.lanes = level.drawn_lanes();
+    out.full_count = guides.strand_count() * level.full_follow_strands as usize;
     color(curves, guides, out);
     let shared = Shared {
         curves,
@@ -43,7 +43,7 @@ pub fn interpolate(
         look,
         level,
         tapers: tapers(&curves.parameters, &look.clump),
-        widening: widening(look, curves.guide_count),
+        widening: widening(look, guides.strand_count()),
     };
     let size = strands_per_guide * points_per_strand;
     out.positions
@@ -51,10 +51,11 @@ pub fn interpolate(
         .zip_eq(out.tangents.par_chunks_mut(size))
         .zip_eq(out.widths.par_chunks_mut(size))
         .enumerate()
-        .for_each_init(Vec::new, |curve, (guide_index, ((positions, tangents), widths))| {
+        .for_each_init(Vec::new, |curve, (drawn_index, ((positions, tangents), widths))| {
+            let guide_index = level.drawn_lanes().strand(drawn_index);
             let skin = skin_frame(guides.root_normals()[guide_index], turns.turn(guide_index));
             let width = guides.widths()[guide_index];
-            let guide = Guide::new(&shared, guide_index, skin, width, curve);
+            let guide = Guide::new(&shared, [guide_index, drawn_index], skin, width, curve);
             for index in 0..strands_per_guide {
                 let range = index * points_per_strand..(index + 1) * points_per_strand;
                 let strand = Strand::new(&shared, &guide, index);
@@ -113,9 +114,10 @@ struct Guide<'a> {
 }
 
 impl<'a> Guide<'a> {
+    /// A guide by its number among all guides and among those that are drawn.
     fn new(
         shared: &Shared,
-        index: usize,
+        [index, drawn_index]: [usize; 2],
         skin: [Vec3; 3],
         width: f32,
         curve: &'a mut Vec<CurvePoint>,
@@ -124,7 +126,7 @@ impl<'a> Guide<'a> {
         let mut length = 0.0;
         let mut outward = Vec2::ZERO;
         for point in 0..shared.curves.points_per_curve {
-            let [position, tangent, normal] = shared.curves.point(index, point);
+            let [position, tangent, normal] = shared.curves.point(drawn_index, point);
             let binormal = tangent.cross(normal);
             match curve.last() {
                 None => outward = Vec2::new(skin[0].dot(normal), skin[0].dot(binormal)),
@@ -133,7 +135,7 @@ impl<'a> Guide<'a> {
             curve.push(CurvePoint { position, normal, binormal });
         }
         let seed = hash_pair(shared.look.seed, index as u32);
-        let own = shared.level.own_width_scale(index, shared.curves.guide_count);
+        let own = shared.level.own_width_scale(index, shared.guides.strand_count());
         let width = width * shared.widening * kept_length(shared, seed) * own;
         let spread = shared.guides.spreads().map_or(1.0, |spreads| spreads[index]);
         Self { seed, curve, skin: [skin[1], skin[2]], outward, length, width, spread }
@@ -258,8 +260,8 @@ fn color(curves: &Curves, guides: &Guides, out: &mut Strands) {
     let Some(colors) = guides.colors() else { return };
     out.colors.resize(curves.guide_count * curves.points_per_curve, Vec3::ZERO);
     let rows = out.colors.par_chunks_mut(curves.points_per_curve).enumerate();
-    rows.for_each(|(guide, row)| {
-        let own = of_guide(guides, colors, guide);
+    rows.for_each(|(drawn_index, row)| {
+        let own = of_guide(guides, colors, out.lanes.strand(drawn_index));
         for (color, parameter) in row.iter_mut().zip(&curves.parameters) {
             *color =
                 between(own, *parameter, |one: [f32; 3], two, share| Vec3::from(one).lerp(two.into(), share));

@@ -6,7 +6,6 @@ use strandline_body::PlacedSolids;
 
 use super::interpolate::differentiate;
 use crate::cpu::Curves;
-use crate::level_of_detail::is_drawn;
 use crate::strands::Strands;
 
 /// Times that a point is moved at most.
@@ -20,19 +19,14 @@ pub fn keep_outside(strands: &mut Strands, curves: &Curves, points_per_strand: u
     let span = 1.0 / (points_per_strand - 1) as f32;
     let first = curves.parameters.iter().position(|parameter| *parameter > (1.0 - ROUNDING) * span);
     let Some(first) = first.filter(|_| !solids.is_empty()) else { return };
-    let (count, per_guide, left_out) =
-        (strands.points_per_strand, strands.strands_per_guide, strands.left_out);
-    strands
-        .positions
-        .par_chunks_mut(count)
-        .zip_eq(strands.tangents.par_chunks_mut(count))
-        .enumerate()
-        .filter(|(strand, _)| is_drawn(strand / per_guide, left_out))
-        .for_each(|(_, (positions, tangents))| {
+    let count = strands.points_per_strand;
+    strands.positions.par_chunks_mut(count).zip_eq(strands.tangents.par_chunks_mut(count)).for_each(
+        |(positions, tangents)| {
             if keep_strand_outside(&mut positions[first..], solids) {
                 differentiate(positions, tangents);
             }
-        });
+        },
+    );
 }
 
 /// Moves points of a strand out; whether there were such.

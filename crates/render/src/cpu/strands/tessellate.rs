@@ -10,14 +10,14 @@
 use glam::{Quat, Vec3};
 use strandline_base::par::prelude::*;
 use strandline_base::vec3x8::Vec3x8;
-use strandline_groom::{Guides, LANES, Vec3Lanes};
+use strandline_groom::{Guides, LANES, LaneSet, Vec3Lanes, block_count};
 use wide::f32x8;
 
 use crate::DetailLevel;
 use crate::strands::curve::{Tap, skin_axes, taps};
 use crate::strands::roots::RootTurn;
 
-/// The guides as smooth curves, all of the same number of points, root first.
+/// The drawn guides ([`DetailLevel::drawn_lanes`]) as smooth curves, all of the same number of points, root first.
 ///
 /// Shapes are `[block][point]` of lanes, one guide a lane.
 #[derive(Clone, Debug, Default)]
@@ -46,7 +46,7 @@ impl Curves {
     }
 
     fn resize(&mut self, guides: &Guides, level: &DetailLevel) {
-        self.guide_count = guides.strand_count();
+        self.guide_count = level.drawn_lanes().count_of(guides.strand_count());
         self.points_per_curve = level.segment_count(guides.points_per_strand()) + 1;
         self.taps.clear();
         self.parameters.clear();
@@ -54,17 +54,17 @@ impl Curves {
             self.taps.push(tap);
             self.parameters.push(parameter);
         }
-        let size = guides.block_count() * self.points_per_curve;
+        let size = block_count(self.guide_count) * self.points_per_curve;
         self.positions.resize(size, Vec3Lanes::default());
         self.tangents.resize(size, Vec3Lanes::default());
         self.normals.resize(size, Vec3Lanes::default());
     }
 }
 
-/// Draws a smooth curve through every guide.
+/// Draws a smooth curve through every guide that is drawn.
 ///
-/// `positions` are the guides' points \[m\] in world space, shape `[block][point]` of lanes;
-/// `guides` gives their number and the skin normals at the roots, which `turns` takes into the world.
+/// `positions` are the points of those \[m\] in world space, shape `[block][point]` of lanes;
+/// `guides` gives the number of all and the skin normals at the roots, which `turns` takes into the world.
 pub fn tessellate(
     positions: &[Vec3Lanes],
     guides: &Guides,
@@ -73,9 +73,9 @@ pub fn tessellate(
     out: &mut Curves,
 ) {
     let points_per_strand = guides.points_per_strand();
-    assert_eq!(positions.len(), guides.block_count() * points_per_strand);
     out.resize(guides, level);
-    let count = out.points_per_curve;
+    assert_eq!(positions.len(), block_count(out.guide_count) * points_per_strand);
+    let (count, drawn) = (out.points_per_curve, (level.drawn_lanes(), out.guide_count));
     let taps = &out.taps;
     out.positions
         .par_chunks_mut(count)
@@ -85,7 +85,7 @@ pub fn tessellate(
         .enumerate()
         .for_each(|(block, (((positions, tangents), normals), points))| {
             spline(points, taps, positions, tangents);
-            normals[0] = root_axes(guides, turns, block, &tangents[0]);
+            normals[0] = root_axes(guides, drawn, turns, block, &tangents[0]);
             carry_frame(positions, tangents, normals);
         });
 }
@@ -124,10 +124,16 @@ fn spline(points: &[Vec3Lanes], taps: &[Tap], positions: &mut [Vec3Lanes], tange
 
 /// An axis of each root's frame, across its tangent: an axis in the skin, turned the way that takes
 /// the skin normal to the tangent. It is fixed to the skin and never spins about a moving strand.
-fn root_axes(guides: &Guides, turns: &impl RootTurn, block: usize, tangents: &Vec3Lanes) -> Vec3Lanes {
+fn root_axes(
+    guides: &Guides,
+    (lanes, guide_count): (LaneSet, usize),
+    turns: &impl RootTurn,
+    block: usize,
+    tangents: &Vec3Lanes,
+) -> Vec3Lanes {
     let mut axes = Vec3Lanes::default();
     for lane in 0..LANES {
-        let guide = (block * LANES + lane).min(guides.strand_count() - 1);
+        let guide = lanes.strand((block * LANES + lane).min(guide_count - 1));
         let [normal, axis, _] = skin_frame(guides.root_normals()[guide], turns.turn(guide));
         axes.set(lane, turn_along(normal, tangents.get(lane), axis));
     }
