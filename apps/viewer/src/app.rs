@@ -15,7 +15,8 @@ use strandline::{
 };
 
 use crate::{
-    clips, compared, export, files, found, notes, playback, recent, rescue, saves, stages, typed, watched,
+    clip_names, compared, export, files, found, notes, playback, recent, rescue, saves, stages, typed,
+    watched,
 };
 
 /// The window's state: the scene that plays, and the changes of the user.
@@ -94,7 +95,7 @@ pub struct App {
     pub(crate) recent: recent::Recent,
     pub(crate) compare: Option<compared::Compare>,
     /// Clips of the files of the body, by the setting that chooses one.
-    pub(crate) clips: BTreeMap<String, clips::Clips>,
+    pub(crate) clips: BTreeMap<String, clip_names::Clips>,
     /// Folder of the next picture and scene.
     pub folder: PathBuf,
 }

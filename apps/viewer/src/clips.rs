@@ -1,37 +1,12 @@
 //! Clips of a body's glTF file, in a list.
 
-use std::path::{Path, PathBuf};
-
 use eframe::egui::{self, Ui};
-use strandline::{
-    Mesh,
-    edit::{Found, Value, Values, with_value},
-    mesh::MeshFormat,
-};
+use strandline::edit::{Found, Value, Values, with_value};
 
 use crate::{App, controls::about, setting_row};
 
 /// Name of no clip.
 const NONE: &str = "no clip";
-
-/// Clips of the file that was looked into last.
-#[derive(Default)]
-pub struct Clips {
-    file: PathBuf,
-    names: Vec<String>,
-}
-
-impl Clips {
-    /// The clips of a file; none of one that has none or cannot be read, which a load of it tells.
-    fn of(&mut self, file: &Path) -> &[String] {
-        if self.file != file {
-            self.file = file.to_owned();
-            let has_clips = MeshFormat::is_of(file);
-            self.names = if has_clips { Mesh::clip_names(file).unwrap_or_default() } else { Vec::new() };
-        }
-        &self.names
-    }
-}
 
 /// The row of a clip: a list of those of the file beside it, or a field where the file has none.
 pub fn row(app: &mut App, found: &Found, values: &Values, ui: &mut Ui) {

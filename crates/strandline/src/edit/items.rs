@@ -76,9 +76,10 @@ mod tests {
         let keys: Vec<&str> = items[1].iter().map(|found| found.key.as_str()).collect();
         let wanted = ["center", "radius", "carrier", "friction"].map(|name| format!("colliders[1].{name}"));
         assert_eq!(keys, wanted, "neither the shape nor the ends of a capsule");
-        let larger = with_value(&two, "colliders[1].radius", Value::Float(0.09)).unwrap();
-        assert_eq!(Values::of(&larger).get("colliders[1].radius").unwrap().as_float(), Some(0.09));
-        assert_eq!(Values::of(&larger).get("colliders[0].radius").unwrap().as_float(), Some(0.05));
+        let larger = with_value(&two, "colliders[1].radius", Value::Float(0.25)).unwrap();
+        let (before, after) = (Values::of(&two), Values::of(&larger));
+        assert_eq!(after.get("colliders[1].radius"), Some(&Value::Float(0.25)));
+        assert_eq!(after.get("colliders[0].radius"), before.get("colliders[0].radius"));
         assert!(without_item(&two, "colliders", 1).unwrap() == one);
         assert!(without_item(&one, "colliders", 0).unwrap() == scene);
         for (list, item) in [("ties", "radius = 0.03"), ("look.group", "name = \"brows\"")] {

@@ -59,7 +59,7 @@ impl<R: Read + Seek> KeptFile<R> {
     /// As [`KeptFile::open`], from bytes.
     ///
     /// # Errors
-    /// What was found, and what was expected.
+    /// A file that is none of this layout or this hair.
     pub fn new(source: R, [strands, points]: [usize; 2]) -> Result<Self, String> {
         let mut npz = Npz::new(source).map_err(text)?;
         let meta = read_meta(&mut npz)?;
