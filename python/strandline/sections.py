@@ -1458,6 +1458,10 @@ class Film(TypedDict, total=False):
 class Timeline(TypedDict, total=False):
     """Frames that a window keeps, so that they are shown again and left as a file without simulating them again."""
 
+    frames: str
+    """File of kept frames that a window begins with, as it saves them with a project; other programs pass it over.
+    Allowed: the path of a file."""
+
     memory: int
     """Memory for frames. Allowed: 1 to 1,000,000 MB."""
 

@@ -1,3 +1,4 @@
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
@@ -13,7 +14,10 @@ use strandline::{
     settings::{SettingError, Stroke},
 };
 
-use crate::{compared, export, files, found, notes, playback, recent, rescue, saves, stages, typed, watched};
+use crate::{
+    clip_names, compared, export, files, found, notes, playback, recent, rescue, saves, stages, typed,
+    watched,
+};
 
 /// The window's state: the scene that plays, and the changes of the user.
 pub struct App {
@@ -90,6 +94,8 @@ pub struct App {
     pub(crate) finding: found::Finding,
     pub(crate) recent: recent::Recent,
     pub(crate) compare: Option<compared::Compare>,
+    /// Clips of the files of the body, by the setting that chooses one.
+    pub(crate) clips: BTreeMap<String, clip_names::Clips>,
     /// Folder of the next picture and scene.
     pub folder: PathBuf,
 }
@@ -136,6 +142,7 @@ impl App {
             finding: found::Finding::default(),
             recent: recent::Recent::default(),
             compare: None,
+            clips: BTreeMap::new(),
             live,
             context,
             base: scene.clone(),
@@ -188,6 +195,9 @@ impl App {
     /// # Errors
     /// A scene that cannot be read; a file of another kind.
     pub fn scene_of(scene: &Scene, file: &Path) -> Result<Scene, Error> {
+        if file.is_dir() {
+            return Scene::load(file);
+        }
         let ending = file.extension().map(|ending| ending.to_string_lossy().to_lowercase());
         let mut scene = scene.clone();
         let absolute = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());

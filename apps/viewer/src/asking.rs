@@ -24,13 +24,14 @@ impl App {
         };
         self.dialog = None;
         match (file, wanted) {
-            (Some(file), Wanted::Open) => self.open_file(&file),
+            (Some(file), Wanted::Open | Wanted::OpenProject) => self.open_file(&file),
             (Some(file), Wanted::Picture) => self.save_picture(Some(file)),
             (Some(file), Wanted::Scene) => self.save_scene(Some(&file)),
+            (Some(folder), Wanted::Project) => self.save_project(Some(&folder)),
             (Some(file), Wanted::Moving) => self.export(Some(&file)),
             (Some(file), Wanted::OpenLook) => self.load_look(&file),
             (Some(file), Wanted::SaveLook) => self.save_look(Some(&file)),
-            (None, Wanted::Open | Wanted::OpenLook) if at_once => {
+            (None, Wanted::Open | Wanted::OpenProject | Wanted::OpenLook) if at_once => {
                 self.note(
                     "this system has no file dialog: type a path, or drop a file on the window".to_owned(),
                 );

@@ -18,6 +18,10 @@ pub enum Wanted {
     Scene,
     /// To write moving hair to.
     Moving,
+    /// The folder of a project to be loaded, and to save one to.
+    OpenProject,
+    /// See [`Wanted::OpenProject`].
+    Project,
     /// A look to be loaded, and to save one to.
     OpenLook,
     /// See [`Wanted::OpenLook`].
@@ -87,6 +91,8 @@ fn question(wanted: Wanted) -> Question {
                 )
                 .pick_file(),
         ),
+        Wanted::OpenProject => Box::pin(dialog.set_title("Open a project").pick_folder()),
+        Wanted::Project => Box::pin(dialog.set_title("Save the project in a folder").pick_folder()),
         Wanted::Picture => {
             let dialog = dialog.set_title("Save the picture").add_filter("PNG", &["png"]);
             Box::pin(dialog.set_file_name("view.png").save_file())

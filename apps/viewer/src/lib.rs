@@ -6,6 +6,8 @@
 mod app;
 mod asking;
 mod brushing;
+mod clip_names;
+mod clips;
 mod compare;
 mod compared;
 mod controls;

@@ -1,6 +1,6 @@
 //! The field for the path of a file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, Key, TextEdit, Ui, accesskit::Role};
 
@@ -37,7 +37,8 @@ pub fn show(app: &mut App, ui: &mut Ui) {
         if ui.small_button(name).on_hover_text(path).clicked() {
             typed.path.clone_from(path);
             typed.look_up();
-            wanted = (!path.ends_with('/')).then(|| path.clone());
+            let is_whole = !path.ends_with('/') || strandline::scene::is_file(Path::new(path));
+            wanted = is_whole.then(|| path.clone());
         }
     }
     match wanted {

@@ -14,6 +14,8 @@ pub type Saved = Result<PathBuf, String>;
 pub struct Saves {
     /// Saves that wait for a picture in full: paths, or `None` for a free name in the folder.
     pub waiting: Vec<Option<PathBuf>>,
+    /// Share of a project that is written, while one is.
+    pub project: Option<f32>,
     threads: Vec<JoinHandle<()>>,
     finished: (Sender<Saved>, Receiver<Saved>),
     taken: HashSet<PathBuf>,
@@ -22,7 +24,7 @@ pub struct Saves {
 impl Default for Saves {
     fn default() -> Self {
         let (waiting, threads, taken) = Default::default();
-        Self { waiting, threads, finished: channel(), taken }
+        Self { waiting, project: None, threads, finished: channel(), taken }
     }
 }
 

@@ -91,6 +91,27 @@ impl App {
         }
     }
 
+    /// Saves the scene and its kept frames as a folder: a free one of the folder when no path is given.
+    pub fn save_project(&mut self, path: Option<&Path>) {
+        let free = || self.saves.free_path(&self.folder, "project", "");
+        match path.map_or_else(free, |path| Ok(path.to_owned())) {
+            Ok(path) => {
+                self.saves.project = Some(0.0);
+                self.live.send(Command::SaveProject(Box::new(self.seen()), self.loaded, path));
+            }
+            Err(error) => self.error = Some(error),
+        }
+    }
+
+    /// Tells of a scene or a project that is written.
+    pub(crate) fn tell_saved(&mut self, path: &Path) {
+        if path.is_dir() {
+            self.saves.project = None;
+            self.recent.add(path);
+        }
+        self.note(format!("wrote {}", path.display()));
+    }
+
     /// Tells of the pictures that are written.
     pub(crate) fn take_saved(&mut self) {
         for saved in self.saves.written() {

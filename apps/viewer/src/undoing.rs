@@ -28,6 +28,7 @@ impl Part {
                 scene.motion.clone_from(&other.motion);
                 scene.wind.clone_from(&other.wind);
                 scene.groom.length = other.groom.length;
+                scene.colliders.clone_from(&other.colliders);
             }
             Self::Simulation => scene.simulation.clone_from(&other.simulation),
             Self::Look => scene.look.clone_from(&other.look),
@@ -40,6 +41,7 @@ impl Part {
                 scene.groom.clone_from(&other.groom);
                 scene.groom.length = length;
                 scene.style.clone_from(&other.style);
+                scene.ties.clone_from(&other.ties);
             }
             Self::Body => {
                 scene.body.clone_from(&other.body);

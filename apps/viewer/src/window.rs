@@ -43,12 +43,16 @@ impl App {
                         self.give_up_pictures();
                     }
                 }
-                LiveEvent::Error(kind, error) => self.error = Some(with_remedy(kind, error)),
+                LiveEvent::Error(kind, error) => {
+                    self.saves.project = None;
+                    self.error = Some(with_remedy(kind, error));
+                }
                 LiveEvent::Paused => {
                     self.playing = false;
                     self.give_up_pictures();
                 }
-                LiveEvent::Saved(path) => self.note(format!("wrote {}", path.display())),
+                LiveEvent::Saved(path) => self.tell_saved(&path),
+                LiveEvent::Saving(share) => self.saves.project = Some(share),
                 LiveEvent::Recorded if self.finishing > 0 => self.finishing -= 1,
                 LiveEvent::Recorded => self.recording = false,
                 LiveEvent::Touched(touched) => self.brush(touched),

@@ -28,6 +28,9 @@ pub struct Ticks {
 /// A frame that ends this part of a step before a step does, a rounding error, has that step too.
 const SLACK: f64 = 1e-6;
 
+/// Longest time \[s\] of a clock that is read from a file: some 30 years.
+const MOST_SECONDS: f64 = 1e9;
+
 impl Clock {
     /// A clock at time 0 for steps of `time_step` \[s\].
     pub fn new(time_step: f32) -> Self {
@@ -90,6 +93,21 @@ impl Clock {
         clock = Self::new(time_step);
         let share = clock.advance(time).share;
         (clock, share)
+    }
+
+    /// The numbers of a clock, for a file: length of a step, start, time, lost time \[s\], and steps.
+    pub fn numbers(&self) -> ([f64; 4], u64) {
+        ([self.time_step, self.start, self.time, self.lost], self.steps)
+    }
+
+    /// The clock with these [`Clock::numbers`]; `None` where they are those of no clock.
+    pub fn of_numbers([time_step, start, time, lost]: [f64; 4], steps: u64) -> Option<Self> {
+        let is_sound = time_step.is_finite()
+            && time_step > 0.0
+            && [start, time].iter().all(|time| (0.0..MOST_SECONDS).contains(time))
+            && lost.abs() <= time_step
+            && steps as f64 * time_step < MOST_SECONDS;
+        is_sound.then_some(Self { time_step, start, time, lost, steps })
     }
 
     /// True where the time is the end of a step, but for rounding.

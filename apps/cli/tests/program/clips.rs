@@ -31,5 +31,5 @@ fn a_clip_is_played_by_its_name() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let output = run("walk");
     let words = String::from_utf8_lossy(&output.stderr);
-    assert!(!output.status.success() && words.contains("no clip `walk` among `nod`, `look`"), "{words}");
+    assert!(!output.status.success() && words.contains("bust.glb: `nod`, `look`"), "{words}");
 }

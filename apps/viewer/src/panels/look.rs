@@ -10,6 +10,7 @@ use strandline::{
     settings::Group,
 };
 
+use super::items;
 use crate::{
     App,
     controls::{choose, colour, slide},
@@ -33,6 +34,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     if app.scene.look != before {
         app.send_look();
     }
+    items::groups(app, ui);
 }
 
 fn colours(look: &mut Look, base: &Look, ui: &mut Ui) {

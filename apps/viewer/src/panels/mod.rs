@@ -1,6 +1,7 @@
 //! The controls beside the picture.
 
 mod detail;
+mod items;
 mod lights;
 mod look;
 mod motion;

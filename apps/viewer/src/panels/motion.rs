@@ -7,6 +7,7 @@ use strandline::{
     settings::Group,
 };
 
+use super::items;
 use crate::{
     App,
     controls::{about, button, slide, slide_in},
@@ -32,6 +33,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
         app.live.send(Change::Length(app.scene.groom.length));
     }
     slide_in(ui, (&mut app.radius, App::RADIUS), 0.002..=0.05, "hand", "its radius, for grabbing [m]");
+    items::colliders(app, ui);
 }
 
 fn names(motion: &mut MotionSection, ui: &mut Ui) {

@@ -23,6 +23,18 @@ pub fn show(app: &mut App, ui: &mut Ui) {
             app.ask(Wanted::Scene, ui.ctx());
         }
     });
+    ui.horizontal(|ui| {
+        let tip = "a folder with the scene and its kept frames, into out/: where it is opened they are there at once";
+        if button(ui, "Project", tip) {
+            app.save_project(None);
+        }
+        if button(ui, "as...", "the same, into a folder of your choice") {
+            app.ask(Wanted::Project, ui.ctx());
+        }
+        if let Some(share) = app.saves.project {
+            ui.add(egui::ProgressBar::new(share).desired_width(80.0).show_percentage());
+        }
+    });
     moving(app, ui);
 }
 

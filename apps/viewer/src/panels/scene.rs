@@ -41,6 +41,9 @@ pub fn show(app: &mut App, ui: &mut Ui) {
         if button(ui, "Open...", "a scene, groom or body: ctrl O") {
             app.ask(Wanted::Open, ui.ctx());
         }
+        if button(ui, "Project...", "a folder that Save > Project wrote, with its kept frames") {
+            app.ask(Wanted::OpenProject, ui.ctx());
+        }
     });
     if !app.recent.files().is_empty() {
         let mut chosen = None;
@@ -65,5 +68,5 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     if app.watch.on && !before {
         app.watch(None);
     }
-    ui.small("Drop a .toml scene, a groom (.hair, .tfx, .ply, .npz ...) or a body (.obj, .glb, .stl ...) on the window.");
+    ui.small("Drop a .toml scene, the folder of a project, a groom (.hair, .tfx, .ply, .npz ...) or a body (.obj, .glb, .stl ...) on the window.");
 }

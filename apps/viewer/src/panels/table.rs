@@ -9,7 +9,8 @@ use strandline::{
     scene::GroomPart,
 };
 
-use crate::{App, controls::button, files::Wanted, setting_row};
+use super::items;
+use crate::{App, clips, controls::button, files::Wanted, setting_row};
 
 /// Files and strands: those of a groom, or of the style that is grown.
 pub fn groom(app: &mut App, ui: &mut Ui) {
@@ -19,9 +20,10 @@ pub fn groom(app: &mut App, ui: &mut Ui) {
     rows(app, ui, "groom", |name| name != "length");
     if !grown {
         let part = |scene: &mut Scene, file| scene.groom.parts.push(GroomPart { file, ..Default::default() });
-        let files = app.scene.groom.parts.iter().map(|part| part.file.clone()).collect();
-        parts(app, ui, files, part, |scene, index| drop(scene.groom.parts.remove(index)));
+        items::files(app, ui, "groom.parts");
+        parts(app, ui, part);
     }
+    items::ties(app, ui);
     if grown {
         ui.separator();
         rows(app, ui, "style", |name| name != "style");
@@ -35,8 +37,8 @@ pub fn body(app: &mut App, ui: &mut Ui) {
     let part = |scene: &mut Scene, file| {
         scene.body.parts.push(strandline::scene::BodyPart { file, ..Default::default() });
     };
-    let files = app.scene.body.parts.iter().map(|part| part.file.clone()).collect();
-    parts(app, ui, files, part, |scene, index| drop(scene.body.parts.remove(index)));
+    items::files(app, ui, "body.parts");
+    parts(app, ui, part);
     ui.separator();
     rows(app, ui, "body_look", |_| true);
 }
@@ -64,30 +66,17 @@ fn rows(app: &mut App, ui: &mut Ui, section: &str, is_wanted: impl Fn(&str) -> b
     let values = Values::of(&app.scene);
     for found in settings_of(section) {
         let name = found.key[section.len() + 1..].to_owned();
-        if is_wanted(&name) {
+        if found.key == "body.clip" {
+            clips::row(app, &found, &values, ui);
+        } else if is_wanted(&name) {
             setting_row::show(app, &found, &values, &name.replace('_', " "), ui);
         }
     }
 }
 
-/// Further files, with a field for another one.
-fn parts(
-    app: &mut App,
-    ui: &mut Ui,
-    files: Vec<PathBuf>,
-    add: impl Fn(&mut Scene, PathBuf),
-    remove: impl Fn(&mut Scene, usize),
-) {
+/// A field for a further file.
+fn parts(app: &mut App, ui: &mut Ui, add: impl Fn(&mut Scene, PathBuf)) {
     let mut changed = None;
-    for (index, file) in files.iter().enumerate() {
-        ui.horizontal(|ui| {
-            if button(ui, "x", "takes this file out") {
-                remove(changed.get_or_insert_with(|| app.scene.clone()), index);
-            }
-            let name = file.file_name().unwrap_or_default().to_string_lossy();
-            ui.label(name).on_hover_text(file.display().to_string());
-        });
-    }
     ui.horizontal(|ui| {
         let typed = ui.scope_id().with("part");
         let mut text: String = ui.data(|data| data.get_temp(typed)).unwrap_or_default();

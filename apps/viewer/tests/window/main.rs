@@ -2,12 +2,14 @@
 
 mod brushes;
 mod drawn;
+mod items;
 mod loading;
 mod measured;
 mod overlays;
 mod panels;
 mod person;
 mod pictures;
+mod project;
 mod table;
 mod tasks;
 mod timeline;

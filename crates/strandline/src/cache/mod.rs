@@ -7,12 +7,14 @@
 mod arrays;
 pub(crate) mod drawn;
 mod files;
+pub(crate) mod kept;
 mod meta;
 mod out;
 mod read;
 pub(crate) mod relative;
 mod shape;
 mod snapshot;
+mod state;
 mod store;
 #[cfg(test)]
 mod tests;

@@ -13,14 +13,13 @@ use strandline_base::{
 };
 
 use super::arrays::{check_memory, expect, missing, numbers, read_meta, starts, text};
-use super::{Snapshot, What, meta, relative, snapshot};
+use super::{Snapshot, What, meta, relative, state};
 use crate::{
     Error, Scene,
     body::{BodyFrame, Pose},
     error::FileProblem,
     groom::{LANES, Vec3Lanes, block_count},
-    sim::Part,
-    strands::bodies::{self, LISTS, OF_FRAMES, OF_STATE, WIDTHS},
+    strands::bodies::{self, LISTS, OF_FRAMES, WIDTHS},
 };
 
 /// Farther than this \[m\] is no hair.
@@ -203,7 +202,7 @@ impl Cache {
 
     /// State of the run, for guides of this shape; none in a cache without it.
     pub(crate) fn snapshot(&mut self, strands: usize, points: usize) -> Result<Option<Snapshot>, Error> {
-        let snapshot = self.frames.snapshot((block_count(strands) * LANES * points) as u64);
+        let snapshot = state::read(&mut self.frames.npz, "", (block_count(strands) * LANES * points) as u64);
         snapshot.map_err(|found| Error::cache(&self.path, found))
     }
 
@@ -228,7 +227,7 @@ pub fn check_cache(bytes: &[u8]) -> Result<(), String> {
     for frame in 0..frames.times.len() {
         frames.read(frame, &mut points)?;
     }
-    frames.snapshot(bytes.len() as u64).map(|_| ())
+    state::read(&mut frames.npz, "", bytes.len() as u64).map(|_| ())
 }
 
 impl<R: Read + Seek> Frames<R> {
@@ -309,52 +308,7 @@ impl<R: Read + Seek> Frames<R> {
             None => Ok(Some(found)),
         }
     }
-
-    /// State of the run; the number of points includes those that fill up the last block.
-    fn snapshot(&mut self, points: u64) -> Result<Option<Snapshot>, String> {
-        let Some(mut clock) = self.npz.open("state_clock").map_err(text)? else { return Ok(None) };
-        expect(&clock, "state_clock", Kind::F64, &[Some(3)])?;
-        let clock: Vec<f64> = f64s(&self.npz.all(&mut clock).map_err(text)?).collect();
-        let poses = numbers(&mut self.npz, "state_poses", Kind::F32, &[Some(4), Some(7)], |bytes| {
-            f32s(bytes).collect::<Vec<_>>()
-        })?;
-        let mut lists: [Vec<f32>; LISTS] = Default::default();
-        for ((name, width), list) in OF_STATE.into_iter().zip(WIDTHS).zip(&mut lists) {
-            if self.npz.open(name).map_err(text)?.is_some() {
-                let shape = [Some(4), None, Some(width as u64)];
-                *list = numbers(&mut self.npz, name, Kind::F32, &shape, |bytes| f32s(bytes).collect())?;
-            }
-        }
-        let mut parts = Vec::new();
-        for (name, part) in snapshot::names() {
-            let Some(mut rows) = self.npz.open(&name).map_err(text)? else { continue };
-            if rows.kind() != Kind::F32 {
-                return Err(format!("{name} of type {}, expected {}", rows.kind().name(), Kind::F32.name()));
-            }
-            if rows.bytes() > 4 * NUMBERS_PER_POINT * points {
-                let (shape, kind) = (rows.shape(), rows.kind().name());
-                return Err(format!(
-                    "{name} of type {kind} and shape {shape:?}, but the scene's hair has {points} points"
-                ));
-            }
-            check_memory(&name, rows.bytes(), 2)?;
-            let shape = rows.shape().iter().map(|count| *count as usize).collect();
-            let numbers = f32s(&self.npz.all(&mut rows).map_err(text)?).collect();
-            parts.push(Part { name: part, shape, numbers });
-        }
-        let snapshot = Snapshot::new(&clock, &poses, &lists, parts)?;
-        if self.npz.open(snapshot::ORIGIN).map_err(text)?.is_none() {
-            return Ok(Some(snapshot));
-        }
-        let origin = numbers(&mut self.npz, snapshot::ORIGIN, Kind::F32, &[Some(3)], |bytes| {
-            f32s(bytes).collect::<Vec<_>>()
-        })?;
-        Ok(Some(Snapshot { origin: Vec3::from_slice(&origin), ..snapshot }))
-    }
 }
-
-/// Most numbers that a part of a state has for a point: the planes of all carriers that a body may have.
-const NUMBERS_PER_POINT: u64 = 8 * 64;
 
 /// Lists of the bodies of all frames, with the numbers of one frame.
 fn lists<R: Read + Seek>(npz: &mut Npz<R>, frames: u64) -> Result<[Option<(Rows, usize)>; LISTS], String> {

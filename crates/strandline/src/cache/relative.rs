@@ -5,7 +5,7 @@ use std::path::{Component, Path, PathBuf};
 use crate::Scene;
 
 /// A scene whose paths start from the folder of a file. Paths on another drive stay absolute.
-pub(super) fn from(file: &Path, scene: &Scene) -> Scene {
+pub(crate) fn from(file: &Path, scene: &Scene) -> Scene {
     let mut moved = scene.clone();
     let home = real(folder_of(file));
     let folder = std::mem::take(&mut moved.folder);

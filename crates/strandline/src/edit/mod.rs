@@ -3,6 +3,7 @@
 
 mod changes;
 mod history;
+mod items;
 mod look_file;
 mod mends;
 mod search;
@@ -10,8 +11,9 @@ mod units;
 
 pub use changes::{changes, difference};
 pub use history::{History, Step};
+pub use items::{items_of, with_item, without_item};
 pub use look_file::{is_look, load_look, save_look};
 pub use mends::{Mend, mends};
 pub use search::{Found, Values, find, settings_of, with_value};
-pub use toml::Value;
+pub use toml::{Table, Value};
 pub use units::quantity;

@@ -35,10 +35,16 @@ pub fn find(words: &str) -> Vec<Found> {
 
 /// The settings of a section and of the sections in it, in the order of a file. Items of lists are not among them.
 pub fn settings_of(section: &str) -> Vec<Found> {
-    let mut all = Vec::new();
-    if let Some(Kind::Group(table)) = Scene::TABLE.row(section).map(|row| row.kind) {
-        collect(table, section, &mut all);
+    match Scene::TABLE.row(section).map(|row| row.kind) {
+        Some(Kind::Group(table)) => settings_in(table, section),
+        _ => Vec::new(),
     }
+}
+
+/// The settings of a table that stands in a section.
+pub(super) fn settings_in(table: &Table, section: &str) -> Vec<Found> {
+    let mut all = Vec::new();
+    collect(table, section, &mut all);
     all
 }
 
@@ -62,10 +68,61 @@ impl Values {
         Self(Value::Table(toml::Table::try_from(scene).unwrap_or_default()))
     }
 
-    /// The value of a setting; `None` where the scene has none.
+    /// The value of a setting, or of an item's, `ties[1].radius`; `None` where the scene has none.
     pub fn get(&self, key: &str) -> Option<&Value> {
-        key.split('.').try_fold(&self.0, |value, name| value.as_table()?.get(name))
+        key.split('.').try_fold(&self.0, |value, part| {
+            let (name, index) = item(part);
+            let value = value.as_table()?.get(name)?;
+            match index {
+                Some(index) => value.as_array()?.get(index.parse::<usize>().ok()?),
+                None => Some(value),
+            }
+        })
     }
+}
+
+/// A part of a key: its name, and the index of an item where there is one.
+fn item(part: &str) -> (&str, Option<&str>) {
+    let split = part.strip_suffix(']').and_then(|part| part.split_once('['));
+    split.map_or((part, None), |(name, index)| (name, Some(index)))
+}
+
+/// The table of a section, or of an item, of a setting with a key; a section that is not there is made.
+pub(super) fn table_of<'a>(
+    mut at: &'a mut toml::Table,
+    sections: &str,
+    key: &str,
+) -> Result<&'a mut toml::Table, Error> {
+    let refuse = |message: String| Error::ParseScene { origin: key.to_owned(), message };
+    for part in sections.split('.').filter(|part| !part.is_empty()) {
+        let (name, index) = item(part);
+        let entry = at.entry(name).or_insert_with(|| Value::Table(toml::Table::new()));
+        let entry = match index {
+            None => Some(entry),
+            Some(index) => index
+                .parse::<usize>()
+                .ok()
+                .zip(entry.as_array_mut())
+                .and_then(|(index, items)| items.get_mut(index)),
+        };
+        let Some(entry) = entry else { return Err(refuse(format!("no such item as `{part}` of {key}"))) };
+        let Value::Table(inner) = entry else {
+            return Err(refuse(format!("`{part}` of {key} is no section")));
+        };
+        at = inner;
+    }
+    Ok(at)
+}
+
+/// The scene of a table, with what no file has of another.
+pub(super) fn changed(scene: &Scene, table: &toml::Table, key: &str) -> Result<Scene, Error> {
+    let mut changed = Scene::parse(&toml::to_string(table).unwrap_or_default(), key)?;
+    (changed.folder, changed.given) = (scene.folder.clone(), scene.given);
+    // Those of a file that is named no longer go with it.
+    if scene.surroundings.file.is_none() || changed.surroundings.file.is_some() {
+        changed.look.surroundings.clone_from(&scene.look.surroundings);
+    }
+    Ok(changed)
 }
 
 /// The scene with another value of a setting; `None` leaves the setting out, which then has its default.
@@ -75,26 +132,12 @@ impl Values {
 pub fn with_value(scene: &Scene, key: &str, value: impl Into<Option<Value>>) -> Result<Scene, Error> {
     let mut table = toml::Table::try_from(scene).unwrap_or_default();
     let (sections, name) = key.rsplit_once('.').unwrap_or(("", key));
-    let mut at = &mut table;
-    for section in sections.split('.').filter(|section| !section.is_empty()) {
-        let entry = at.entry(section).or_insert_with(|| Value::Table(toml::Table::new()));
-        let Value::Table(inner) = entry else {
-            let message = format!("`{section}` of {key} is no section");
-            return Err(Error::ParseScene { origin: key.to_owned(), message });
-        };
-        at = inner;
-    }
+    let at = table_of(&mut table, sections, key)?;
     match value.into() {
         Some(value) => at.insert(name.to_owned(), value),
         None => at.remove(name),
     };
-    let mut changed = Scene::parse(&toml::to_string(&table).unwrap_or_default(), key)?;
-    (changed.folder, changed.given) = (scene.folder.clone(), scene.given);
-    // Those of a file that is named no longer go with it.
-    if scene.surroundings.file.is_none() || changed.surroundings.file.is_some() {
-        changed.look.surroundings.clone_from(&scene.look.surroundings);
-    }
-    Ok(changed)
+    changed(scene, &table, key)
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ use super::timeline::Range;
 use crate::{
     Error, ErrorKind, Scene, Sources, Written,
     film::FilmFiles,
+    prepare::Unbrushed,
     render::{FrameReport, Picture},
     session::{Change, Event},
 };
@@ -28,6 +29,9 @@ pub(super) enum Message {
     Loading(Box<LiveEvent>),
     /// The film with this number is over.
     Recorded(u64, Result<FilmFiles, Error>),
+    /// A share of a project is written, or all of it.
+    Saving(f32),
+    SavedProject(Result<PathBuf, Error>),
     /// Kept frames are written.
     Exported(Result<Written, Error>),
     /// Somebody waits until nothing is left to do.
@@ -45,6 +49,8 @@ pub(super) struct DrawingThread {
     out: Arc<Mutex<Out>>,
     wake: Box<dyn Fn() + Send>,
     clock: LiveClock,
+    /// The last scene that was loaded, before its strokes.
+    unbrushed: Arc<Mutex<Option<Arc<Unbrushed>>>>,
 }
 
 impl DrawingThread {
@@ -58,7 +64,7 @@ impl DrawingThread {
         let advanced = own.clone();
         // After the end no thread receives it.
         clock.on_advance(move || drop(advanced.send(Message::Advanced)));
-        Self { messages, own, out, wake, clock }
+        Self { messages, own, out, wake, clock, unbrushed: Arc::default() }
     }
 
     pub fn run(self) {
@@ -123,6 +129,10 @@ impl DrawingThread {
             Message::Exported(written) => {
                 return self.emit(written.map_or_else(LiveEvent::from, LiveEvent::Exported));
             }
+            Message::Saving(share) => return self.emit(LiveEvent::Saving(share)),
+            Message::SavedProject(saved) => {
+                return self.emit(saved.map_or_else(LiveEvent::from, LiveEvent::Saved));
+            }
             Message::Idle(idler) => return playing.idlers.push(idler),
             Message::Advanced | Message::End => return,
         };
@@ -137,6 +147,7 @@ impl DrawingThread {
             Command::Adapt(adapts) => playing.adapts = adapts,
             Command::Overlay(overlay) => (playing.overlay, playing.stale) = (overlay, true),
             Command::Save(scene, load, path) => self.save(playing, *scene, load, path),
+            Command::SaveProject(scene, load, folder) => self.save_project(playing, *scene, load, &folder),
             Command::Record(folder) => self.record(playing, &folder),
             Command::StopRecording => playing.finishing.extend(playing.recorder.take().map(Recorder::finish)),
             Command::Change(change) => self.change(playing, change),
@@ -200,14 +211,16 @@ impl DrawingThread {
     fn load(&self, playing: &mut Playing, scene: Box<Scene>, sources: Box<Sources>) {
         playing.load = playing.received;
         playing.loading += 1;
-        let (own, number) = (self.own.clone(), playing.load);
+        let (own, number, unbrushed) = (self.own.clone(), playing.load, self.unbrushed.clone());
         let job = move || {
             let tell = |stage, hair| {
                 drop(own.send(Message::Loading(Box::new(LiveEvent::Loading(number, stage, hair)))))
             };
-            let loaded = catch_unwind(AssertUnwindSafe(|| Loaded::new(&scene, &sources, &tell)))
+            let mut kept = unbrushed.lock().unwrap_or_else(PoisonError::into_inner).clone();
+            let loaded = catch_unwind(AssertUnwindSafe(|| Loaded::new(&scene, &sources, &mut kept, &tell)))
                 .unwrap_or(Err(Error::WorkerGone))
                 .map(Box::new);
+            *unbrushed.lock().unwrap_or_else(PoisonError::into_inner) = kept;
             // Nobody waits for it any more when the window is closed.
             let _ = own.send(Message::Loaded(number, loaded));
         };
@@ -238,21 +251,29 @@ impl DrawingThread {
             // The last good state is still there.
             self.emit(error.into());
         }
-        self.emit(match &mut playing.scene {
-            Some(loaded) if playing.loaded == load => match loaded.save(scene, &path) {
-                Ok(()) => LiveEvent::Saved(path),
-                Err(error) => error.into(),
-            },
-            Some(_) => LiveEvent::Error(
-                ErrorKind::Other,
-                "not saved, as another scene has just come: save again".to_owned(),
-            ),
-            None => LiveEvent::Error(ErrorKind::Other, "there is no hair to save yet".to_owned()),
+        let Some(loaded) = self.loaded_of(playing, load) else { return };
+        self.emit(match loaded.save(scene, &path) {
+            Ok(()) => LiveEvent::Saved(path),
+            Err(error) => error.into(),
         });
     }
 
+    /// The scene that plays, if it comes from a load; else tells that it is not saved.
+    pub(super) fn loaded_of<'a>(&self, playing: &'a mut Playing, load: u64) -> Option<&'a mut Loaded> {
+        let is_there = playing.scene.is_some();
+        if is_there && playing.loaded == load {
+            return playing.scene.as_deref_mut();
+        }
+        let why = match is_there {
+            true => "not saved, as another scene has just come: save again",
+            false => "there is no hair to save yet",
+        };
+        self.emit(LiveEvent::Error(ErrorKind::Other, why.to_owned()));
+        None
+    }
+
     /// Waits for all that the simulation has begun.
-    fn catch_up(&self, playing: &mut Playing) -> Result<(), Error> {
+    pub(super) fn catch_up(&self, playing: &mut Playing) -> Result<(), Error> {
         while playing.scene.as_ref().is_some_and(|loaded| loaded.session.started() > 0) {
             playing.stale = true;
             self.take(playing)?;

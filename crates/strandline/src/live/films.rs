@@ -1,10 +1,11 @@
-//! Videos and kept frames that are written while hair plays.
+//! Videos, kept frames and projects that are written while hair plays.
 
 use std::path::Path;
 
 use super::drawing_thread::{DrawingThread, Message};
 use super::messages::LiveEvent;
 use super::playing::Playing;
+use super::project;
 use super::recorder::Recorder;
 use crate::{Error, OutSettings, Scene, film::FilmFiles};
 
@@ -60,6 +61,24 @@ impl DrawingThread {
         // Nobody waits for it any more when the window is closed.
         let done = move |written| drop(own.send(Message::Exported(written)));
         match loaded.export(scene, settings, frames, done) {
+            Ok(thread) => playing.finishing.push(thread),
+            Err(error) => self.emit(error.into()),
+        }
+    }
+
+    /// Saves a project on a thread of its own, after all that the simulation has begun.
+    pub(super) fn save_project(&self, playing: &mut Playing, scene: Scene, load: u64, folder: &Path) {
+        if let Err(error) = self.catch_up(playing) {
+            // The last good state is still there.
+            self.emit(error.into());
+        }
+        let Some(loaded) = self.loaded_of(playing, load) else { return };
+        let (own, telling) = (self.own.clone(), self.own.clone());
+        // Nobody waits for them any more when the window is closed.
+        let done = move |saved| drop(own.send(Message::SavedProject(saved)));
+        let tell = move |share| drop(telling.send(Message::Saving(share)));
+        let saved = project::save((&mut loaded.session, &loaded.timeline), scene, folder, tell, done);
+        match saved {
             Ok(thread) => playing.finishing.push(thread),
             Err(error) => self.emit(error.into()),
         }

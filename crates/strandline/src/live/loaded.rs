@@ -9,10 +9,12 @@ use strandline_base::WholeFile;
 
 use super::messages::LoadStage;
 use super::overlaid::{Overlaid, sketch};
+use super::project;
 use super::timeline::Timeline;
 use crate::{
     Camera, Error, Prepared, Scene, Sources,
     body::Solids,
+    prepare::Unbrushed,
     session::worker::Worker,
     session::{Session, Simulation},
 };
@@ -34,28 +36,46 @@ pub(super) struct Loaded {
 pub(super) type Tell<'a> = &'a dyn Fn(LoadStage, Option<(Arc<Overlaid>, Camera)>);
 
 impl Loaded {
-    pub fn new(scene: &Scene, sources: &Sources, tell: Tell) -> Result<Self, Error> {
+    /// Loads a scene; `kept` has what a load of the same scene with other strokes left.
+    pub fn new(
+        scene: &Scene,
+        sources: &Sources,
+        kept: &mut Option<Arc<Unbrushed>>,
+        tell: Tell,
+    ) -> Result<Self, Error> {
         tell(LoadStage::Growing, None);
-        let mut prepared = Prepared::from_sources(scene, sources)?;
+        let mut prepared = Prepared::after(scene, sources, kept)?;
         let mut notes = std::mem::take(&mut prepared.notes);
         let aspect = scene.picture.width as f32 / scene.picture.height.max(1) as f32;
         let sketched = (Arc::new(sketch(&prepared, aspect)), prepared.camera(aspect));
         tell(LoadStage::Opening, Some(sketched));
         let mut session = Session::open(prepared, scene.devices)?;
-        tell(LoadStage::Settling, None);
-        session.settle()?;
+        session.keep_frames();
+        let film = session.scene().film;
+        let last = film.frames - u32::from(session.scene().groom.pose.is_some());
+        let mut timeline = Timeline::new(&session.scene().timeline, last);
+        if scene.timeline.frames.is_some() {
+            tell(LoadStage::Reading, None);
+        }
+        let (goes_on, told) = project::open(scene, &mut session, &mut timeline);
+        notes.extend(told);
+        session.begin_without_frames();
+        if !goes_on {
+            tell(LoadStage::Settling, None);
+            session.settle()?;
+        }
         notes.extend(session.take_notes());
         session.follow_camera();
         let solids = session.colliders().iter().cloned();
         let solids = Solids::new(solids.map(|solid| (solid, 0.0)));
-        let mut session = session.beside()?;
-        session.keep_frames();
-        let film = session.scene().film;
-        let last = film.frames - u32::from(session.scene().groom.pose.is_some());
-        let timeline = Timeline::new(&session.scene().timeline, last);
+        let session = session.beside()?;
         let mut loaded = Self { session, notes, timeline, resets: false, solids };
-        let note = loaded.begin()?;
-        loaded.notes.extend(note);
+        if goes_on {
+            loaded.show(loaded.timeline.playhead)?;
+        } else {
+            let note = loaded.begin()?;
+            loaded.notes.extend(note);
+        }
         Ok(loaded)
     }
 

@@ -41,6 +41,10 @@ pub enum Command {
     /// hair as it is then, which is what is seen where nothing moves; `film.start` is the time. Hair in a
     /// hand is let go in it. The number is that of the load that the scene goes back to.
     Save(Box<Scene>, u64, PathBuf),
+    /// Saves a scene as it began, with the kept frames up to the last that is up to date, in a folder: where that is loaded,
+    /// the frames are there at once and the hair goes on after the last, on the CPU to the same bits. The number is as
+    /// that of [`Command::Save`].
+    SaveProject(Box<Scene>, u64, PathBuf),
     /// Draws simpler pictures while the hair moves or is changed and a full one takes longer than
     /// 80 ms; off to begin with. What stands still is drawn in full after a moment.
     Adapt(bool),
@@ -102,19 +106,22 @@ pub enum LoadStage {
     Growing,
     /// The simulation and the renderer are made.
     Opening,
+    /// Kept frames of a project are read.
+    Reading,
     /// The hair comes to rest.
     Settling,
 }
 
 impl LoadStage {
     /// All of them, in their order.
-    pub const ALL: [Self; 3] = [Self::Growing, Self::Opening, Self::Settling];
+    pub const ALL: [Self; 4] = [Self::Growing, Self::Opening, Self::Reading, Self::Settling];
 
     /// The work that is done, for a person.
     pub fn name(self) -> &'static str {
         match self {
             Self::Growing => "growing hair and body",
             Self::Opening => "making the simulation",
+            Self::Reading => "reading kept frames",
             Self::Settling => "letting the hair come to rest",
         }
     }
@@ -137,8 +144,10 @@ pub enum LiveEvent {
     Error(ErrorKind, String),
     /// It stands still, since a frame failed: its error came before.
     Paused,
-    /// The scene is saved there.
+    /// The scene, or the project, is saved there.
     Saved(PathBuf),
+    /// Share of a project that is written.
+    Saving(f32),
     /// The video is over.
     Recorded,
     /// Kept frames are written.

@@ -10,6 +10,7 @@ mod messages;
 mod overlaid;
 mod overlay;
 mod playing;
+mod project;
 mod recorder;
 mod timeline;
 

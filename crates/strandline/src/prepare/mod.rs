@@ -30,6 +30,7 @@ mod skull;
 mod solids;
 mod sources;
 mod start;
+mod unbrushed;
 mod units;
 mod wrap;
 
@@ -41,11 +42,15 @@ pub use map::read_map;
 pub use placing::Placement;
 pub use sample::mesh_unit;
 pub use sources::Sources;
+pub(crate) use unbrushed::Unbrushed;
+
+use std::sync::Arc;
 
 use glam::Vec3;
 
 use framing::head_motion;
 use loading::Loading;
+use unbrushed::stamps;
 
 use crate::{
     BoundStrands, Camera, Error, HeadMotion, Scene,
@@ -96,8 +101,7 @@ impl Prepared {
     /// As [`Prepared::new`].
     pub fn groom(scene: &Scene) -> Result<Groom, Error> {
         let sources = Sources::default();
-        let mut loading = Loading::new(scene, &sources)?;
-        placed(&mut loading)?;
+        let loading = placed(scene, &sources, &mut None)?;
         Ok(loading.groom.unwrap_or_else(|| Groom::empty(0.0)))
     }
 
@@ -106,22 +110,52 @@ impl Prepared {
     /// # Errors
     /// As [`Prepared::new`]; a source that the scene does not name, or that is unusable.
     pub fn from_sources(scene: &Scene, sources: &Sources) -> Result<Self, Error> {
-        let mut loading = Loading::new(scene, sources)?;
-        placed(&mut loading)?;
+        Self::after(scene, sources, &mut None)
+    }
+
+    /// As [`Prepared::from_sources`], without the stages before the strokes where they were kept from a load of the same
+    /// scene with other strokes; else they are kept.
+    pub(crate) fn after(
+        scene: &Scene,
+        sources: &Sources,
+        kept: &mut Option<Arc<Unbrushed>>,
+    ) -> Result<Self, Error> {
+        let mut loading = placed(scene, sources, kept)?;
         guides::guides(&mut loading)?;
         bind(loading)
     }
 }
 
 /// Stages of loading up to all strands at their place.
-fn placed(loading: &mut Loading) -> Result<(), Error> {
+fn placed<'a>(
+    scene: &Scene,
+    sources: &'a Sources,
+    kept: &mut Option<Arc<Unbrushed>>,
+) -> Result<Loading<'a>, Error> {
+    let files = stamps(scene);
+    let known = kept.as_ref().map(|kept| kept.begin(scene, sources, &files)).transpose()?.flatten();
+    let mut loading = match known {
+        Some(loading) => loading,
+        None => {
+            let mut loading = Loading::new(scene, sources)?;
+            unbrushed(&mut loading)?;
+            *kept = Unbrushed::of(&loading, files).map(Arc::new);
+            loading
+        }
+    };
+    roots::brushed(&mut loading);
+    looks::colors(&mut loading)?;
+    Ok(loading)
+}
+
+/// Stages of loading before the strokes of a brush.
+fn unbrushed(loading: &mut Loading) -> Result<(), Error> {
     read::read(loading)?;
     ends::turn(loading);
     place::place(loading)?;
     fit::fit(loading);
     solids::solids(loading)?;
-    roots::roots(loading)?;
-    looks::colors(loading)
+    roots::roots(loading)
 }
 
 /// Last stage of loading: all strands bound to their guides, and the motion of the head.

@@ -53,6 +53,7 @@ pub(super) fn diagonal(bounds: Aabb) -> f32 {
 }
 
 /// Placements of the groom files of a scene, which share theirs, and of its body's files.
+#[derive(Clone)]
 pub(super) struct Placings {
     pub groom: Placing,
     pub body: Placing,

@@ -4,7 +4,7 @@ use super::{cover, guess, loading::Loading, marked, wrap};
 use crate::{Error, Scene, groom::Groom};
 
 /// Grows the style where the scene names no groom, leads roots of a style or of another head's hair to the skin, and
-/// presses hair under a hat.
+/// presses hair under a hat: all before the strokes of a brush.
 pub(super) fn roots(loading: &mut Loading) -> Result<(), Error> {
     match &mut loading.groom {
         Some(groom) => {
@@ -17,11 +17,15 @@ pub(super) fn roots(loading: &mut Loading) -> Result<(), Error> {
     if let Some(groom) = &mut loading.groom {
         loading.notes.extend(cover::press(groom, &loading.covers, loading.skull.as_ref()));
     }
+    Ok(())
+}
+
+/// Brushes the hair, and tells of roots that are away from the skin.
+pub(super) fn brushed(loading: &mut Loading) {
     brush(loading);
     let pair = loading.groom.as_ref().zip(loading.own_mesh());
     let apart = pair.and_then(|(groom, mesh)| guess::apart(groom, mesh));
     loading.notes.extend(apart);
-    Ok(())
 }
 
 /// Strokes of a brush over the hair at rest, in their order.

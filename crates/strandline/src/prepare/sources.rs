@@ -54,6 +54,12 @@ pub struct Sources {
 type Body = (Mesh, Option<VertexMotion>, Vec<String>);
 
 impl Sources {
+    /// True where nothing is in memory.
+    pub(super) fn is_empty(&self) -> bool {
+        let Self { grooms, meshes, motions, maps } = self;
+        grooms.is_empty() && meshes.is_empty() && motions.is_empty() && maps.is_empty()
+    }
+
     /// Adds a groom, in its own units and axes: for `groom.file` and `groom.parts[..].file`.
     #[must_use]
     pub fn with_groom(mut self, name: impl Into<PathBuf>, groom: impl Into<Arc<Groom>>) -> Self {
@@ -159,7 +165,7 @@ impl Sources {
             let found = "a clip of a body in memory";
             return Err(SettingError::new("body.clip", found, "a motion among the sources").into());
         }
-        let (mesh, motion, notes) = Mesh::load_moving(&path, clip)?;
+        let (mesh, motion, notes) = moving(&path, clip, "body.clip")?;
         let noted = |note: String| format!("{}: {note}", name.display());
         Ok((mesh, Some(motion), notes.into_iter().map(noted).collect()))
     }
@@ -175,7 +181,8 @@ impl Sources {
             let key = format!("body.parts[{index}].clip");
             return Err(SettingError::new(key, "a clip of a mesh in memory", "a part from a file").into());
         }
-        let (mesh, motion, mut notes) = Mesh::load_moving(&scene.path(&part.file), clip)?;
+        let key = format!("body.parts[{index}].clip");
+        let (mesh, motion, mut notes) = moving(&scene.path(&part.file), clip, &key)?;
         let motion = motion.with_teleports(&TeleportSection::times(&part.teleports))?;
         if !part.visible {
             notes.push(format!("the clip `{clip}` is not played: the part is not drawn"));
@@ -247,6 +254,28 @@ impl Sources {
         let found = format!("`{}`", name.display());
         Err(SettingError::new("a source", found, format!("a name of the scene: {expected}")).into())
     }
+}
+
+/// Clips that a message lists.
+const LISTED: usize = 20;
+
+/// A mesh that a clip moves; `key` names the clip.
+fn moving(path: &Path, clip: &str, key: &str) -> Result<(Mesh, VertexMotion, Vec<String>), Error> {
+    Mesh::load_moving(path, clip)
+        .map_err(|error| unknown(path, clip, key).map_or_else(|| error.into(), Into::into))
+}
+
+/// The refusal of a clip that a file with clips lacks.
+fn unknown(path: &Path, clip: &str, key: &str) -> Option<SettingError> {
+    let names = Mesh::clip_names(path).ok()?;
+    if names.is_empty() || names.iter().any(|name| name.eq_ignore_ascii_case(clip)) {
+        return None;
+    }
+    let listed: Vec<String> = names.iter().take(LISTED).map(|name| format!("`{name}`")).collect();
+    let more =
+        if names.len() > LISTED { format!(" and {} more", names.len() - LISTED) } else { String::new() };
+    let expected = format!("a clip of {}: {}{more}", path.display(), listed.join(", "));
+    Some(SettingError::new(key, format!("`{clip}`"), expected))
 }
 
 #[cfg(test)]

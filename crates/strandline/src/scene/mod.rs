@@ -157,11 +157,12 @@ impl Scene {
         self.devices.pictures = pictures.unwrap_or(self.devices.pictures);
     }
 
-    /// Loads a TOML file.
+    /// Loads a TOML file, or that of a project's folder.
     ///
     /// # Errors
     /// A file that cannot be read, is not TOML, or has an unknown key or a value of the wrong kind.
     pub fn load(path: &Path) -> Result<Self, Error> {
+        let path = &*file_of(path);
         let text = read_plain(path, MAX_FILE_BYTES)
             .and_then(|bytes| String::from_utf8(bytes).map_err(std::io::Error::other))
             .map_err(|source| Error::ReadScene { path: path.to_owned(), source })?;
@@ -271,10 +272,10 @@ impl Scene {
 
     /// Lets hair and motion begin at their beginning, not where a saved scene has them: for other hair.
     pub fn begin_at_rest(&mut self) {
-        (self.groom.pose, self.film.start) = (None, 0.0);
+        (self.groom.pose, self.film.start, self.timeline.frames) = (None, 0.0, None);
     }
 
-    /// Every path of the scene but that of the hair's pose.
+    /// Every path of the scene but those of the hair's pose and of kept frames.
     pub fn paths_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
         let Self { groom, body, motion, look, surroundings, .. } = self;
         let named = [
@@ -300,7 +301,16 @@ impl Scene {
     }
 }
 
-/// True where a path has the ending of a scene file.
+/// Name of the scene in a project's folder.
+pub const PROJECT_SCENE: &str = "scene.toml";
+
+/// True where a path has the ending of a scene file, or is the folder of a project.
 pub fn is_file(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"))
+    let is_toml = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+    is_toml && !path.is_dir() || path.join(PROJECT_SCENE).is_file()
+}
+
+/// The file of a scene: the path itself, or the file in it where it is a folder.
+pub fn file_of(path: &Path) -> std::borrow::Cow<'_, Path> {
+    if path.is_dir() { path.join(PROJECT_SCENE).into() } else { path.into() }
 }

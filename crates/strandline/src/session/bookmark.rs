@@ -7,15 +7,17 @@ use crate::{
 };
 
 /// A simulation between two tasks, without a hand that holds hair. The same tasks lead on from it to the same bits.
+#[derive(Clone)]
 pub(crate) struct Bookmark {
-    state: Checkpoint,
-    settings: Settings,
-    clock: Clock,
-    share: f32,
-    exact: Option<BodyFrame>,
-    bodies: [BodyFrame; 2],
-    end: BodyFrame,
-    passed: f64,
+    pub state: Checkpoint,
+    pub settings: Settings,
+    pub clock: Clock,
+    pub share: f32,
+    /// The body at the end of the last run, where the shown moment is that; else none.
+    pub exact: Option<BodyFrame>,
+    pub bodies: [BodyFrame; 2],
+    pub end: BodyFrame,
+    pub passed: f64,
 }
 
 impl Bookmark {

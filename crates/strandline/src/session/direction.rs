@@ -60,15 +60,33 @@ impl Direction {
         if std::mem::take(&mut self.begins) {
             self.offset = -self.time;
         }
-        let weather = self.weather.take().unwrap_or_else(|| {
-            Arc::new(Weather { head: self.head_from_origin.clone(), wind: self.wind.clone() })
-        });
-        self.weather = Some(weather.clone());
+        let weather = self.weather();
         let (frames, offset) = (self.time * self.rate, self.offset);
         let on_time = (frames - frames.round()).abs() < SLACK;
         // Times of frames are those of a film, to the bit.
         let until = if on_time { (frames.round() + 1.0) / self.rate } else { self.time + 1.0 / self.rate };
         Live { until, offset, most_steps: self.most_steps, weather, hand: self.hand }
+    }
+
+    /// Head and wind of the next frame.
+    pub fn weather(&mut self) -> Arc<Weather> {
+        let Self { head_from_origin, wind, motion, weather, .. } = self;
+        let now = || {
+            let (head, wind, motion) = (head_from_origin.clone(), wind.clone(), motion.clone());
+            Arc::new(Weather { head, wind, motion })
+        };
+        weather.get_or_insert_with(now).clone()
+    }
+
+    /// Times of motion and wind \[s\] at their beginning and when that of the clock is 0, and true where the motion begins
+    /// with the next frame.
+    pub fn times(&self) -> ([f64; 2], bool) {
+        ([self.begun, self.offset], self.begins)
+    }
+
+    /// Sets what [`Direction::times`] has.
+    pub fn set_times(&mut self, ([begun, offset], begins): ([f64; 2], bool)) {
+        (self.begun, self.offset, self.begins) = (begun, offset, begins);
     }
 
     /// Goes back to the beginning.
@@ -103,17 +121,38 @@ impl Direction {
     /// # Errors
     /// A setting outside its range.
     pub fn set_motion(&mut self, motion: MotionSection) -> Result<(), Error> {
-        motion.check_as("motion")?;
-        let (body, recorded) = (self.head.body().cloned(), self.head.recorded().cloned());
-        let head = HeadMotion::new(&motion, self.head.pivot())?;
-        let (solids, neck) = (self.head.solids().clone(), self.head.neck());
-        self.head = head.with_body(body).with_recorded(recorded).with_solids(solids).with_neck(neck);
+        self.head = self.head_of(&motion)?;
         self.head_from_origin = self.head.seen_from(self.head_from_origin.origin());
         if motion.name != self.motion.name {
             (self.begun, self.begins) = (0.0, true);
         }
         (self.motion, self.weather) = (motion, None);
         Ok(())
+    }
+
+    /// The head that follows another section, in the world.
+    ///
+    /// # Errors
+    /// A setting outside its range.
+    fn head_of(&self, motion: &MotionSection) -> Result<HeadMotion, Error> {
+        motion.check_as("motion")?;
+        let (body, recorded) = (self.head.body().cloned(), self.head.recorded().cloned());
+        let head = HeadMotion::new(motion, self.head.pivot())?;
+        let (solids, neck) = (self.head.solids().clone(), self.head.neck());
+        Ok(head.with_body(body).with_recorded(recorded).with_solids(solids).with_neck(neck))
+    }
+
+    /// Weather of a former time: a head that follows a section, and a wind.
+    ///
+    /// # Errors
+    /// A setting outside its range.
+    pub fn weather_of(&mut self, motion: MotionSection, wind: WindSection) -> Result<Arc<Weather>, Error> {
+        if (&motion, &wind) == (&self.motion, &self.wind) {
+            return Ok(self.weather());
+        }
+        wind.check_as("wind")?;
+        let head = self.head_of(&motion)?.seen_from(self.head_from_origin.origin());
+        Ok(Arc::new(Weather { head, wind, motion }))
     }
 
     /// Another wind.

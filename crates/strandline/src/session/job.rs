@@ -10,7 +10,7 @@ use crate::{
     body::{BodyFrame, Pose},
     groom::Vec3Lanes,
     scene::devices::device_name,
-    scene::{Air, WindSection},
+    scene::{Air, MotionSection, WindSection},
     session::worker::{Gone, Work, Worker},
     sim::{Settings, SimError, StepReport, Stiffening},
 };
@@ -40,6 +40,8 @@ pub(crate) enum Task {
 pub(crate) struct Weather {
     pub head: HeadMotion,
     pub wind: WindSection,
+    /// The section that the head follows.
+    pub motion: MotionSection,
 }
 
 /// A stretch of time that a person directs.
@@ -87,7 +89,7 @@ impl Live {
     /// As in a film, motion and wind are asked for at times of steps, never of frames.
     fn run(self, simulation: &mut Simulation) -> Result<Vec<StepReport>, SimError> {
         let Self { offset, hand, .. } = self;
-        let Weather { head, wind } = &*self.weather;
+        let Weather { head, wind, .. } = &*self.weather;
         let (start, begin) = (simulation.end().clone(), simulation.clock.time());
         hand.into_iter().for_each(|hand| simulation.move_hand(hand));
         let until = self.until.min(begin + self.most_steps * simulation.time_step());

@@ -24,7 +24,8 @@ mod painter;
 mod pick;
 #[cfg(test)]
 mod pieces_tests;
-mod resuming;
+mod project;
+pub(crate) mod resuming;
 mod simulation;
 mod skin_carrier;
 mod sync;
@@ -38,7 +39,7 @@ pub(crate) use bookmark::Bookmark;
 pub use change::Change;
 pub(crate) use draft::Draft;
 pub use event::Event;
-pub(crate) use job::{Executor, Inline, Live, Task};
+pub(crate) use job::{Executor, Inline, Live, Task, Weather};
 pub(crate) use kept::Held;
 pub use pick::{Ray, Touched};
 pub(crate) use simulation::Simulation;

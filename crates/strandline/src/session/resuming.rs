@@ -57,6 +57,23 @@ pub(super) fn check(former: &Scene, now: &Scene) -> Result<Option<String>, Strin
     Ok((!lines.is_empty()).then(|| format!("the film goes on with other settings: {}", lines.join(", "))))
 }
 
+/// Keys of settings that decide how hair moves and differ between two scenes, with both values. Names of files count
+/// without their folders.
+pub(crate) fn moving(former: &Scene, now: &Scene) -> Vec<String> {
+    let mut differ = Vec::new();
+    let [former, now] = [former, now].map(|scene| {
+        let mut bare = scene.clone();
+        bare.paths_mut().for_each(|path| *path = path.file_name().map(Into::into).unwrap_or_default());
+        let pose = bare.groom.pose.take();
+        bare.groom.pose = pose.and_then(|pose| pose.file_name().map(Into::into));
+        Value::try_from(bare).expect("every section is plain data")
+    });
+    differences("", Some(&former), Some(&now), &mut differ);
+    // The air that a guide meets depends on the hairs that it stands for.
+    differ.retain(|(key, ..)| key == "look.hair_count" || !is_in(key, &FREE));
+    differ.iter().map(|(key, former, now)| format!("{key} = {now} (was {former})")).collect()
+}
+
 /// True for a key that is one of these, or in a section that is.
 fn is_in(key: &str, keys: &[&str]) -> bool {
     keys.iter().any(|known| {

@@ -128,7 +128,7 @@ fn a_film_shows_the_clip() {
 #[test]
 fn an_unknown_clip_is_refused_with_those_that_there_are() {
     let error = Prepared::new(&scene("walk")).err().unwrap().to_string();
-    assert!(error.contains("no clip `walk` among `nod`, `look`, `shrug`, `smile`"), "{error}");
+    assert!(error.contains("glb: `nod`, `look`, `shrug`, `smile`"), "{error}");
     let mut bare = scene("nod");
     bare.body.file = None;
     let error = bare.check().unwrap_err().to_string();
@@ -324,7 +324,7 @@ fn clips_of_parts_that_cannot_be_played_are_refused_or_told() {
     let mut wrong = scene("nod");
     wrong.body.parts = vec![twin("walk")];
     let error = Prepared::new(&wrong).err().unwrap().to_string();
-    assert!(error.contains("no clip `walk` among `nod`, `look`"), "{error}");
+    assert!(error.contains("body.parts[0].clip is `walk`, expected a clip of "), "{error}");
     wrong.body.parts = vec![BodyPart { visible: false, ..twin("shrug") }];
     let notes = Prepared::new(&wrong).unwrap().notes.join("\n");
     assert!(notes.contains("the clip `shrug` is not played: the part is not drawn"), "{notes}");

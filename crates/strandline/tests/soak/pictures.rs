@@ -109,6 +109,7 @@ impl Person {
                 LiveEvent::Loading(..)
                 | LiveEvent::Note(_)
                 | LiveEvent::Recorded
+                | LiveEvent::Saving(_)
                 | LiveEvent::Exported(_)
                 | LiveEvent::Touched(_) => {}
             }

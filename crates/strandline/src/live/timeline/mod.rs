@@ -42,8 +42,8 @@ pub(crate) struct Frame {
     /// Time of motion and wind \[s\].
     pub time: f64,
     /// Tasks between the frame before and this one, and its own; `None` of the first.
-    made: Option<(Vec<Task>, Live)>,
-    bookmark: Option<Box<Bookmark>>,
+    pub made: Option<(Vec<Task>, Live)>,
+    pub bookmark: Option<Arc<Bookmark>>,
     /// Reports of its steps, without the times of their stages.
     pub reports: Vec<StepReport>,
 }
@@ -134,6 +134,33 @@ impl Timeline {
         (self.used, self.under_way, self.spool) = ([0; 2], None, None);
         self.frames.push_back(frame(held, time, None, bookmark, Vec::new()));
         self.used = self.frames[0].bytes();
+        self.make_room()
+    }
+
+    /// Numbers of the first frame, of the first with points, and of the last that is up to date.
+    pub fn bounds(&self) -> [u32; 3] {
+        [self.first, self.kept, self.good]
+    }
+
+    /// The frames that are up to date, with and without points.
+    pub fn up_to_date(&self) -> impl Iterator<Item = &Frame> {
+        self.frames.iter().take((self.good + 1 - self.first) as usize)
+    }
+
+    /// Forgets all frames; those that are pushed next begin with a number, and have points from another one on.
+    pub fn empty(&mut self, first: u32, kept: u32) {
+        self.frames.clear();
+        (self.first, self.kept) = (first, kept);
+        (self.used, self.under_way, self.spool) = ([0; 2], None, None);
+    }
+
+    /// Adds a frame of a project behind the last, and moves the playhead to it. Returns a note where there is no room.
+    pub fn push(&mut self, frame: Frame) -> Option<String> {
+        let [memory, disk] = frame.bytes();
+        self.used = [self.used[0] + memory, self.used[1] + disk];
+        self.frames.push_back(frame);
+        let number = self.last();
+        (self.at, self.good, self.playhead) = (number, number, number);
         self.make_room()
     }
 
@@ -339,7 +366,7 @@ fn frame(
         origin: held.origin,
         time,
         made,
-        bookmark: bookmark.map(Box::new),
+        bookmark: bookmark.map(Arc::new),
         reports,
     }
 }

@@ -12,7 +12,7 @@ fn loaded() -> Loaded {
     scene.body.spacing = 0.01;
     scene.devices = Backend::Cpu.into();
     scene.motion.name = crate::scene::MotionName::Shake;
-    Loaded::new(&scene, &Box::default(), &|_, _| {}).unwrap()
+    Loaded::new(&scene, &Box::default(), &mut None, &|_, _| {}).unwrap()
 }
 
 /// The middle one of some times \[s\].
@@ -73,7 +73,8 @@ fn frames_beyond_the_memory_lie_on_the_disk_and_those_beyond_both_are_forgotten(
     let bookmark = loaded.session.with(crate::session::Simulation::bookmark).unwrap();
     let held = loaded.session.held();
     let mut positions = held.positions.to_vec();
-    let mut timeline = Timeline::new(&TimelineSection { memory: 13, disk: 4 }, 240);
+    let mut timeline =
+        Timeline::new(&TimelineSection { memory: 13, disk: 4, ..TimelineSection::default() }, 240);
     timeline.begin(&held, 0.0, Some(bookmark));
     for frame in 1..=60 {
         positions[7].x[3] = frame as f32;

@@ -3,6 +3,7 @@
 mod as_film;
 mod files;
 mod helpers;
+mod project;
 mod timeline;
 
 use std::time::Duration;

@@ -12,7 +12,7 @@ use strandline::{
 use super::helpers::{error, scene, settled, wait, waking};
 
 /// A scene that stands still, with a head that shakes in the wind.
-fn shaken() -> Scene {
+pub fn shaken() -> Scene {
     let mut scene = scene();
     scene.motion.name = MotionName::Shake;
     scene.wind.velocity = Vec3::new(2.0, 0.0, 1.0);
@@ -21,7 +21,7 @@ fn shaken() -> Scene {
     scene
 }
 
-fn paused(scene: Scene) -> Live {
+pub fn paused(scene: Scene) -> Live {
     let live = Live::new(scene, waking()).unwrap();
     live.send(Command::Play(false));
     live.wait_idle();
@@ -29,24 +29,24 @@ fn paused(scene: Scene) -> Live {
 }
 
 /// The picture after so many further frames, one after the other.
-fn steps(live: &Live, frames: u32) -> Shown {
+pub fn steps(live: &Live, frames: u32) -> Shown {
     for _ in 0..frames {
         live.send(Command::Step);
     }
     settled(live)
 }
 
-fn seek(live: &Live, frame: u32) -> Shown {
+pub fn seek(live: &Live, frame: u32) -> Shown {
     live.send(Command::Seek(frame));
     settled(live)
 }
 
-fn breeze() -> Change {
+pub fn breeze() -> Change {
     Change::Wind(WindSection { velocity: Vec3::new(-6.0, 0.0, 2.0), ..WindSection::default() })
 }
 
 /// Points of every frame of a cache.
-fn points(path: &Path) -> Vec<Vec<Vec3>> {
+pub fn points(path: &Path) -> Vec<Vec<Vec3>> {
     let mut cache = Cache::open(path).unwrap();
     let mut points = Vec::new();
     (0..cache.len())
@@ -57,7 +57,7 @@ fn points(path: &Path) -> Vec<Vec<Vec3>> {
         .collect()
 }
 
-fn exported(live: &Live, scene: &Scene, path: &Path, frames: [u32; 2]) {
+pub fn exported(live: &Live, scene: &Scene, path: &Path, frames: [u32; 2]) {
     live.send(Command::Export(Box::new(scene.clone()), OutSettings::new(path), frames));
     let written = wait(|| {
         live.take_events().into_iter().find_map(|news| match news {
