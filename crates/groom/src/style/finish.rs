@@ -12,6 +12,9 @@ use super::comb::smooth;
 use super::strand::{CLEARANCE, Strand, outside};
 use crate::arcs::equal_arcs;
 
+/// Angle \[rad\] by which disorder of a strand in a lock of curls is out of step with that of the lock.
+const OUT_OF_STEP: f32 = 0.7;
+
 /// The shaped strands, and the clump of each.
 pub fn finish(
     settings: &StyleSettings,
@@ -143,6 +146,11 @@ impl Bends {
         bends.curl_phase = middle.1 + 0.35 * turn + 0.15 * own.signed();
         bends.curl = middle.2 * (1.0 + 0.12 * size + 0.06 * own.signed());
         bends.rate = middle.3 * (1.0 + 0.006 * size);
+        if settings.is_curled() {
+            // A lock of curls strays as a whole.
+            let mut lock = Random::new(settings.seed, 14_000_000_000 + u64::from(clump));
+            bends.swing = [(); 4].map(|()| TAU * lock.unit() + OUT_OF_STEP * own.signed());
+        }
         bends
     }
 

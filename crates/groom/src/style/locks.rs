@@ -23,6 +23,9 @@ const APART: [[f32; 2]; 2] = [[0.05, 0.02], [0.03, 0.012]];
 const STRAY: f32 = 3.5;
 /// Distance \[m\] by which strays stand off at their tips.
 const STRAY_OUT: f32 = 0.006;
+/// Shares of their length between which curls close to large locks, and the pull of these over that of other locks.
+const CURLS_CLOSE: [f32; 2] = [0.06, 0.55];
+const CURLS_HELD: f32 = 1.25;
 /// Share of the strands on the hairline itself that are short, and their lengths \[m\].
 const SHORT: (f32, [f32; 2]) = (0.5, [0.008, 0.035]);
 
@@ -41,7 +44,7 @@ pub(super) fn shape(
     hair: &[Between],
 ) -> Vec<Shaped> {
     let larges = larges(guides, clumps);
-    let closing = closing(settings.points());
+    let closing = closing(settings);
     let shaped = hair.par_iter().enumerate().map(|(index, own)| {
         let lock = index / SMALL_LOCK;
         let middle = &hair[(lock * SMALL_LOCK + SMALL_LOCK / 2).min(hair.len() - 1)];
@@ -69,10 +72,19 @@ fn larges<'a>(guides: &'a [Strand], clumps: &[u32]) -> HashMap<u32, Large<'a>> {
     named.into_iter().map(large).collect()
 }
 
-/// Shares of the pull toward a small and a large lock that points of a strand have reached.
-fn closing(points: usize) -> Vec<[f32; 2]> {
-    let share = |point: usize| point as f32 / (points - 1) as f32;
-    (0..points).map(|point| [0.7, 1.3].map(|power| math::powf(share(point), power))).collect()
+/// Shares of the pull toward a small and a large lock that points of a strand have reached. Curls close to locks that are
+/// thinner than curls are wide by the middle of their length: wider ones are a bush.
+fn closing(settings: &StyleSettings) -> Vec<[f32; 2]> {
+    let last = settings.points() - 1;
+    let large = |share: f32| {
+        if settings.is_curled() {
+            CURLS_HELD * smooth(CURLS_CLOSE[0], CURLS_CLOSE[1], share)
+        } else {
+            math::powf(share, 1.3)
+        }
+    };
+    let share = |point: usize| point as f32 / last as f32;
+    (0..=last).map(|point| [math::powf(share(point), 0.7), large(share(point))]).collect()
 }
 
 /// A strand while it is shaped.
