@@ -82,7 +82,7 @@ impl Scalp {
 
     /// True if hair grows at a place on the skin \[m\].
     pub fn contains(&self, position: Vec3) -> bool {
-        self.height_above_hairline(position) > 0.0 && self.mannequin.ear_distance(position) > EAR_MARGIN
+        self.height_above_hairline(position) > 0.0 && !self.mannequin.is_ear_within(position, EAR_MARGIN)
     }
 
     /// Height \[m\] of a place on the skin above the hairline there, negative on bare skin.
@@ -119,17 +119,31 @@ impl Scalp {
     /// \[Yuksel2015\]; more are drawn one from each stretch of a space-filling curve. Neighbours in the
     /// list are neighbours on the skin.
     pub fn roots(&self, count: usize, seed: u64) -> Vec<Root> {
+        if count > ELIMINATED {
+            return self.stretched(count, seed);
+        }
         let mut candidates = self.candidates(count * CANDIDATES, seed);
         candidates.par_sort_by_cached_key(|root| curve_index(root.uv));
-        if count <= ELIMINATED {
-            let positions: Vec<Vec3> = candidates.iter().map(|root| root.position).collect();
-            let kept = elimination::kept(&positions, 0, count);
-            return kept.into_iter().map(|index| candidates[index]).collect();
-        }
-        let stretches = candidates.par_chunks(CANDIDATES).enumerate();
-        stretches
-            .map(|(index, roots)| roots[Random::new(seed, index as u64).bits() as usize % CANDIDATES])
-            .collect()
+        let positions: Vec<Vec3> = candidates.iter().map(|root| root.position).collect();
+        let kept = elimination::kept(&positions, 0, count);
+        kept.into_iter().map(|index| candidates[index]).collect()
+    }
+
+    /// One root of each stretch of the curve. Only those that are chosen are led onto the skin.
+    fn stretched(&self, count: usize, seed: u64) -> Vec<Root> {
+        let guess = |index: u64| {
+            let guess = self.random_guess(&mut Random::new(seed, index));
+            self.contains(guess).then_some(guess)
+        };
+        let mut guesses = many(count * CANDIDATES, guess);
+        guesses.par_sort_by_cached_key(|guess| curve_index(uv(*guess)));
+        let chosen = |stretch: usize| {
+            let first = stretch * CANDIDATES + Random::new(seed, stretch as u64).bits() as usize % CANDIDATES;
+            // One in some thousands lies beside the border.
+            let mut onward = guesses[first..].iter().chain(&guesses);
+            onward.find_map(|guess| self.root_at(*guess))
+        };
+        (0..count).into_par_iter().filter_map(chosen).collect()
     }
 
     /// `count` further roots among others, spread evenly (blue noise) with them, as in [`Scalp::roots`]. More than
@@ -147,30 +161,23 @@ impl Scalp {
 
     /// Independent random places, equally likely everywhere on the scalp.
     fn candidates(&self, count: usize, seed: u64) -> Vec<Root> {
-        let mut found = Vec::new();
-        let mut tried = 0;
-        while found.len() < count {
-            // About half of the table is scalp.
-            let batch = (2 * (count - found.len())).max(64) as u64;
-            found.par_extend(
-                (tried..tried + batch).into_par_iter().filter_map(|index| self.candidate(index, seed)),
-            );
-            tried += batch;
-        }
-        found.truncate(count);
-        found
+        many(count, |index| {
+            let guess = self.random_guess(&mut Random::new(seed, index));
+            if self.height_above_hairline(guess) < -0.01 { None } else { self.root_at(guess) }
+        })
     }
 
-    fn candidate(&self, index: u64, seed: u64) -> Option<Root> {
-        let mut random = Random::new(seed, index);
+    /// A random place near the skin \[m\].
+    fn random_guess(&self, random: &mut Random) -> Vec3 {
         let wanted = random.unit() * self.areas[self.areas.len() - 1];
         let cell = self.areas.partition_point(|&area| area <= wanted).min(self.areas.len() - 1);
         let polar = (cell / AZIMUTHS) as f32 + random.unit();
         let azimuth = (cell % AZIMUTHS) as f32 + random.unit();
-        let guess = self.guess(polar, azimuth);
-        if self.height_above_hairline(guess) < -0.01 {
-            return None;
-        }
+        self.guess(polar, azimuth)
+    }
+
+    /// The root nearest to a place near the skin \[m\], if hair grows there.
+    fn root_at(&self, guess: Vec3) -> Option<Root> {
         let (position, normal) = self.mannequin.nearest_skin(guess);
         let on_skin = self.mannequin.distance(position).abs() < 1e-5;
         (on_skin && self.contains(position)).then(|| Root { position, normal, uv: uv(position) })
@@ -185,6 +192,19 @@ impl Scalp {
         let lower = radius(row + 1, column) * (1.0 - along) + radius(row + 1, column + 1) * along;
         CENTER + direction(polar, azimuth) * (upper * (1.0 - down) + lower * down)
     }
+}
+
+/// The first `count` things that are found by their index; about half of the indices find one.
+fn many<T: Send>(count: usize, find: impl Fn(u64) -> Option<T> + Sync) -> Vec<T> {
+    let mut found = Vec::new();
+    let mut tried = 0;
+    while found.len() < count {
+        let batch = (2 * (count - found.len())).max(64) as u64;
+        found.par_extend((tried..tried + batch).into_par_iter().filter_map(&find));
+        tried += batch;
+    }
+    found.truncate(count);
+    found
 }
 
 /// Direction of a place in the table.
@@ -308,7 +328,15 @@ mod tests {
         let (mannequin, scalp) = scalp();
         let roots = scalp.roots(ELIMINATED + 1, 1);
         assert_eq!(roots.len(), ELIMINATED + 1);
-        assert!(roots.iter().all(|root| mannequin.distance(root.position).abs() < 1e-5));
+        let grows =
+            |root: &Root| mannequin.distance(root.position).abs() < 1e-5 && scalp.contains(root.position);
+        assert!(roots.iter().all(grows));
+        let mut places: Vec<[u32; 3]> =
+            roots.iter().map(|root| root.position.to_array().map(f32::to_bits)).collect();
+        places.sort_unstable();
+        places.dedup();
+        // One in some thousands may have moved to the root of the next stretch.
+        assert!(places.len() as f32 > 0.999 * roots.len() as f32, "{} places", places.len());
         let right = roots.iter().filter(|root| root.position.x > 0.0).count() as f32 / roots.len() as f32;
         // Stratified: far better than the standard error of 0.002 of independent draws.
         assert!((right - 0.5).abs() < 0.004, "{right}");

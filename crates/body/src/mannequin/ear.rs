@@ -92,6 +92,12 @@ impl Ear {
         self.at(self.head_from_ear.transpose() * (point - self.origin)).value
     }
 
+    /// True if the ear is nearer than a distance \[m\] to a point with x >= 0.
+    pub(super) fn is_within(&self, point: Vec3, distance: f32) -> bool {
+        let reach = REACH + ROOT_BLEND + distance;
+        (point - self.origin).length_squared() <= reach * reach && self.distance(point) <= distance
+    }
+
     /// The axes of an ear whose back edge stands off the head by `flare` \[rad\] and whose upper end
     /// leans back by `lean` \[rad\].
     pub(super) fn frame(flare: f32, lean: f32) -> Mat3 {

@@ -60,6 +60,11 @@ impl Mannequin {
         self.shape.ear_distance(point)
     }
 
+    /// True if an ear is nearer than a distance \[m\]: quicker than the distance itself where both are far.
+    pub(crate) fn is_ear_within(&self, point: Vec3, distance: f32) -> bool {
+        self.shape.is_ear_within(point, distance)
+    }
+
     /// The point \[m\] about which the head nods and turns: between the base of the skull and the
     /// uppermost vertebra.
     pub fn neck_pivot(&self) -> Vec3 {

@@ -81,6 +81,11 @@ impl BustShape {
         self.ear.distance(Vec3::new(point.x.abs(), point.y, point.z))
     }
 
+    /// True if an ear is nearer than a distance \[m\].
+    pub(super) fn is_ear_within(&self, point: Vec3, distance: f32) -> bool {
+        self.ear.is_within(Vec3::new(point.x.abs(), point.y, point.z), distance)
+    }
+
     fn half_at(&self, point: Vec3) -> Field {
         let torso = self.torso(point);
         // Below the collar bones nothing of the head is near.

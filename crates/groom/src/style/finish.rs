@@ -12,6 +12,9 @@ use super::comb::smooth;
 use super::strand::{CLEARANCE, Strand, outside};
 use crate::arcs::equal_arcs;
 
+/// Angle \[rad\] by which disorder of a strand in a lock of curls is out of step with that of the lock.
+const OUT_OF_STEP: f32 = 0.7;
+
 /// The shaped strands, and the clump of each.
 pub fn finish(
     settings: &StyleSettings,
@@ -143,6 +146,11 @@ impl Bends {
         bends.curl_phase = middle.1 + 0.35 * turn + 0.15 * own.signed();
         bends.curl = middle.2 * (1.0 + 0.12 * size + 0.06 * own.signed());
         bends.rate = middle.3 * (1.0 + 0.006 * size);
+        if settings.is_curled() {
+            // A lock of curls strays as a whole.
+            let mut lock = Random::new(settings.seed, 14_000_000_000 + u64::from(clump));
+            bends.swing = [(); 4].map(|()| TAU * lock.unit() + OUT_OF_STEP * own.signed());
+        }
         bends
     }
 
@@ -150,12 +158,17 @@ impl Bends {
     pub fn offset(&self, settings: &StyleSettings, [side, up]: [Vec3; 2], share: f32, length: f32) -> Vec3 {
         let along = share * length;
         let wave = settings.wave_amplitude * smooth(0.02, 0.16, along);
-        let wave_rate = 1.0 + 0.5 * (self.rate - 1.0);
-        let angle = self.wave_phase + TAU * wave_rate * along / settings.wave_length;
-        let waved = wave * (math::sin(angle) * side + 0.4 * math::cos(angle) * up);
         let curl = settings.curl_radius * smooth(0.005, 0.08, along);
-        let angle = self.curl_phase + TAU * self.rate * along / settings.curl_length;
-        let curled = curl * (self.curl * math::cos(angle) * side + self.curl.abs() * math::sin(angle) * up);
+        let (mut waved, mut curled) = (Vec3::ZERO, Vec3::ZERO);
+        if wave > 0.0 {
+            let wave_rate = 1.0 + 0.5 * (self.rate - 1.0);
+            let angle = self.wave_phase + TAU * wave_rate * along / settings.wave_length;
+            waved = wave * (math::sin(angle) * side + 0.4 * math::cos(angle) * up);
+        }
+        if curl > 0.0 {
+            let angle = self.curl_phase + TAU * self.rate * along / settings.curl_length;
+            curled = curl * (self.curl * math::cos(angle) * side + self.curl.abs() * math::sin(angle) * up);
+        }
         let [a, b] = [self.swing[0] + 25.0 * along, self.swing[1] + 41.0 * along];
         let disorder = settings.noise * share;
         let loose =

@@ -133,8 +133,9 @@ fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, roo
     let mut direction = leaving(settings, &combed);
     let mut passed_tie = 0.0;
     let steps = (length / STEP).ceil() as usize;
+    let mut above = covered(settings, mannequin, point);
     for step in 1..=steps {
-        let (distance, out) = covered(settings, mannequin, point);
+        let (distance, out) = above;
         let place = Place { point, distance, out, passed: passed_tie };
         let wanted = combed.direction(settings, place).normalize_or(Vec3::NEG_Y);
         let kept = if combed.tied && settings.style != Style::Ponytail { WOUND } else { STIFFNESS };
@@ -148,7 +149,7 @@ fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, roo
         }
         let before = point;
         let least = clearance.min(distance + 0.5 * STEP).max(CLEARANCE);
-        point = uncovered(settings, mannequin, point + direction * STEP, least);
+        (point, above) = uncovered(settings, mannequin, point + direction * STEP, least);
         direction = (point - before).normalize_or(direction);
         points.push(point);
         if settings.style.is_tied() {
@@ -206,11 +207,21 @@ fn covered(settings: &StyleSettings, mannequin: &Mannequin, point: Vec3) -> (f32
     (joined, out.lerp(slope.normalize(), share).normalize_or(out))
 }
 
-/// Moves a point out of the body and of the domes over the ears.
-fn uncovered(settings: &StyleSettings, mannequin: &Mannequin, point: Vec3, clearance: f32) -> Vec3 {
-    let (distance, out) = covered(settings, mannequin, point);
-    let moved = if distance < clearance { point + out * (clearance - distance) } else { point };
-    outside(mannequin, moved, clearance)
+/// Moves a point out of the body and of the domes over the ears: the point, and what [`covered`] says there.
+fn uncovered(
+    settings: &StyleSettings,
+    mannequin: &Mannequin,
+    point: Vec3,
+    clearance: f32,
+) -> (Vec3, (f32, Vec3)) {
+    let above = covered(settings, mannequin, point);
+    let (distance, out) = above;
+    // The domes only come nearer than the skin.
+    if distance >= clearance {
+        return (point, above);
+    }
+    let moved = outside(mannequin, point + out * (clearance - distance), clearance);
+    (moved, covered(settings, mannequin, moved))
 }
 
 /// Takes the corners out of a strand without drawing it into the body; the root stays.

@@ -69,9 +69,10 @@ fn roots(settings: &StyleSettings, scalp: &Scalp, guides: &[Strand], count: usiz
     let others: Vec<Root> = guides.iter().map(|guide| guide.root).collect();
     let wanted = (count as f32 * SPARE).ceil() as usize;
     let found = scalp.roots_among(&others, wanted, settings.seed ^ 0x5eed);
+    let density = |root: &Root| smooth(0.0, settings.hairline.max(1e-6), scalp.depth(root.position));
+    let densities: Vec<f32> = found.par_iter().map(density).collect();
     let mut random = Random::new(settings.seed, 4_000_000_000);
-    let rated = found.into_iter().map(|root| {
-        let density = smooth(0.0, settings.hairline.max(1e-6), scalp.depth(root.position));
+    let rated = found.into_iter().zip(densities).map(|(root, density)| {
         let grows = random.unit() < THINNEST + (1.0 - THINNEST) * density;
         (root, density, grows)
     });

@@ -1,5 +1,6 @@
 //! Locks of two sizes, strays, frizz and ends of the hair between guides.
 
+use std::collections::{BTreeSet, HashMap};
 use std::f32::consts::TAU;
 
 use glam::Vec3;
@@ -22,6 +23,9 @@ const APART: [[f32; 2]; 2] = [[0.05, 0.02], [0.03, 0.012]];
 const STRAY: f32 = 3.5;
 /// Distance \[m\] by which strays stand off at their tips.
 const STRAY_OUT: f32 = 0.006;
+/// Shares of their length between which curls close to large locks, and the pull of these over that of other locks.
+const CURLS_CLOSE: [f32; 2] = [0.06, 0.55];
+const CURLS_HELD: f32 = 1.25;
 /// Share of the strands on the hairline itself that are short, and their lengths \[m\].
 const SHORT: (f32, [f32; 2]) = (0.5, [0.008, 0.035]);
 
@@ -39,14 +43,48 @@ pub(super) fn shape(
     clumps: &[u32],
     hair: &[Between],
 ) -> Vec<Shaped> {
+    let larges = larges(guides, clumps);
+    let closing = closing(settings);
     let shaped = hair.par_iter().enumerate().map(|(index, own)| {
         let lock = index / SMALL_LOCK;
         let middle = &hair[(lock * SMALL_LOCK + SMALL_LOCK / 2).min(hair.len() - 1)];
         let clump = clumps[own.guide];
-        let one = One { settings, own, middle, large: &guides[clump as usize], clump, lock, index };
-        one.shape(mannequin)
+        let Some(large) = larges.get(&clump) else { unreachable!("every lock has a middle") };
+        One { settings, own, middle, large, closing: &closing, clump, lock, index }.shape(mannequin)
     });
     shaped.collect()
+}
+
+/// The middle of a large lock.
+struct Large<'a> {
+    strand: &'a Strand,
+    /// Directions across it at each point.
+    across: Vec<[Vec3; 2]>,
+}
+
+/// Middles of the locks that `clumps` names.
+fn larges<'a>(guides: &'a [Strand], clumps: &[u32]) -> HashMap<u32, Large<'a>> {
+    let named: BTreeSet<u32> = clumps.iter().copied().collect();
+    let large = |clump: u32| {
+        let strand = &guides[clump as usize];
+        (clump, Large { strand, across: frames(&strand.points, strand.root.normal) })
+    };
+    named.into_iter().map(large).collect()
+}
+
+/// Shares of the pull toward a small and a large lock that points of a strand have reached. Curls close to locks that are
+/// thinner than curls are wide by the middle of their length: wider ones are a bush.
+fn closing(settings: &StyleSettings) -> Vec<[f32; 2]> {
+    let last = settings.points() - 1;
+    let large = |share: f32| {
+        if settings.is_curled() {
+            CURLS_HELD * smooth(CURLS_CLOSE[0], CURLS_CLOSE[1], share)
+        } else {
+            math::powf(share, 1.3)
+        }
+    };
+    let share = |point: usize| point as f32 / last as f32;
+    (0..=last).map(|point| [math::powf(share(point), 0.7), large(share(point))]).collect()
 }
 
 /// A strand while it is shaped.
@@ -55,7 +93,8 @@ struct One<'a> {
     own: &'a Between,
     /// In the middle of its small and of its large lock.
     middle: &'a Between,
-    large: &'a Strand,
+    large: &'a Large<'a>,
+    closing: &'a [[f32; 2]],
     clump: u32,
     lock: usize,
     index: usize,
@@ -72,17 +111,16 @@ impl One<'_> {
         let wisp = Wisp::new(self.settings, &mut random, if is_stray { STRAY } else { 0.7 + 0.6 * frizz });
         let held = if is_stray { 0.15 } else { 0.7 + 0.5 * pull };
         let last = strand.points.len() - 1;
-        // Curls of a lock turn about one axis: its middle lends the directions across.
-        let across = frames(&self.large.points, self.large.root.normal);
         let mut points: Vec<Vec3> = (0..=last)
             .map(|point| {
                 let share = point as f32 / last as f32;
                 let tangent = tangent(&strand.points, point);
-                let up = across[point][1];
+                // Curls of a lock turn about one axis: its middle lends the directions across.
+                let up = self.large.across[point][1];
                 let up = (up - tangent * up.dot(tangent)).normalize_or(tangent.any_orthonormal_vector());
                 let frame = [tangent.cross(up), up];
                 let out = if is_stray { STRAY_OUT * share * share } else { 0.0 };
-                self.drawn(point, share, held)
+                self.drawn(point, held)
                     + bends.offset(self.settings, frame, share, length)
                     + wisp.offset(frame, share * length)
                     + up * out
@@ -100,14 +138,15 @@ impl One<'_> {
     }
 
     /// A point drawn toward the middles of both locks.
-    fn drawn(&self, point: usize, share: f32, held: f32) -> Vec3 {
-        let toward = |here: Vec3, middle: Vec3, size: usize, most: f32, power: f32| {
+    fn drawn(&self, point: usize, held: f32) -> Vec3 {
+        let [of_small, of_large] = self.closing[point];
+        let toward = |here: Vec3, middle: Vec3, size: usize, most: f32, closed: f32| {
             let near = smooth(APART[size][0], APART[size][1], here.distance(middle));
-            here.lerp(middle, (most * held).min(1.0) * math::powf(share, power) * near)
+            here.lerp(middle, (most * held).min(1.0) * closed * near)
         };
         let here = self.own.strand.points[point];
-        let small = toward(here, self.middle.strand.points[point], 1, self.settings.lock_share, 0.7);
-        toward(small, self.large.points[point], 0, self.settings.clump_share, 1.3)
+        let small = toward(here, self.middle.strand.points[point], 1, self.settings.lock_share, of_small);
+        toward(small, self.large.strand.points[point], 0, self.settings.clump_share, of_large)
     }
 
     /// Share of its length that is left of a strand: its lock and itself are cut, and hair on the hairline is short.

@@ -298,6 +298,11 @@ impl StyleSettings {
         }
     }
 
+    /// True for hair that falls in curls; the coils of an afro are closer together than locks are.
+    pub(super) fn is_curled(&self) -> bool {
+        self.curl_radius > 0.0 && self.style.is_parted()
+    }
+
     /// Points of a grown strand: more where it bends more.
     pub(super) fn points(&self) -> usize {
         if self.style.is_of_face() || self.style == Style::Buzz {
