@@ -19,7 +19,10 @@ impl GpuRunner {
             return Ok(None);
         };
         // The next step gathers the velocities of faces again, so nothing depends on what is left on them.
-        let once = self.kernels.solve_pressure.bind_gradient(&self.gpu, volume, gradient)?;
+        let once = self
+            .kernels
+            .solve_pressure(&self.gpu, &self.model)?
+            .bind_gradient(&self.gpu, volume, gradient)?;
         let repeated: Vec<_> = (0..count).flat_map(|_| once.iter().cloned()).collect();
         let marks =
             Buffer::<u64>::new(&self.gpu, "times of the gradient", Timer::BYTES as usize / size_of::<u64>())?;

@@ -1,7 +1,5 @@
 //! Points sorted by the cell that holds them at the start of a step.
 
-use std::sync::OnceLock;
-
 use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, kernel};
 
 use super::cell_buffers::{Cells, LatticeState};
@@ -21,28 +19,10 @@ kernel! {
     }
 }
 
-/// The kernels, compiled when a step first has the stage.
-#[derive(Default)]
-pub(super) struct Stage(OnceLock<Kernels>);
-
-struct Kernels {
+pub(super) struct Stage {
     find_buckets: Kernel<FindBuckets<'static>>,
     list_points: Kernel<ListPoints<'static>>,
     rank_points: Kernel<RankPoints<'static>>,
-}
-
-impl Stage {
-    fn kernels(&self, gpu: &Gpu) -> Result<&Kernels, GpuError> {
-        if let Some(kernels) = self.0.get() {
-            return Ok(kernels);
-        }
-        let kernels = Kernels {
-            find_buckets: Kernel::new(gpu, &[])?,
-            list_points: Kernel::new(gpu, &[])?,
-            rank_points: Kernel::new(gpu, &[])?,
-        };
-        Ok(self.0.get_or_init(|| kernels))
-    }
 }
 
 impl StageKernels for Stage {
@@ -50,25 +30,28 @@ impl StageKernels for Stage {
         vec![FindBuckets::declaration()]
     }
 
-    fn new(_: &Gpu, _: &Model) -> Result<Self, GpuError> {
-        Ok(Self::default())
+    fn new(gpu: &Gpu, _: &Model) -> Result<Self, GpuError> {
+        Ok(Self {
+            find_buckets: Kernel::new(gpu, &[])?,
+            list_points: Kernel::new(gpu, &[])?,
+            rank_points: Kernel::new(gpu, &[])?,
+        })
     }
 
     /// `start_index` must be all 0 when the first kernel starts.
     fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {
         let Target { gpu, buffers, scan, side, .. } = *to;
         let Some(cells) = &buffers.cells else { return Ok(Vec::new()) };
-        let kernels = self.kernels(gpu)?;
         let Cells { lattice, start_index, totals, cell_ranks, order, .. } = cells;
         let (step, positions, points) = (&buffers.step, &buffers.places[side], buffers.point_count());
         let find = FindBuckets { step, cell_ranks, lattice, positions, counts: start_index };
-        let mut dispatches = vec![kernels.find_buckets.bind(gpu, &find)?.over(points)];
+        let mut dispatches = vec![self.find_buckets.bind(gpu, &find)?.over(points)];
         dispatches.extend(scan.bind(gpu, start_index, totals)?);
         let list = ListPoints { step, cell_ranks, start_index, counted: order };
-        let list = kernels.list_points.bind(gpu, &list)?.over(points);
+        let list = self.list_points.bind(gpu, &list)?.over(points);
         let rank = RankPoints { step, cell_ranks, start_index, counted: order };
         // Listed as they were counted, then by their ranks.
-        dispatches.extend([list.clone(), kernels.rank_points.bind(gpu, &rank)?.over(points), list]);
+        dispatches.extend([list.clone(), self.rank_points.bind(gpu, &rank)?.over(points), list]);
         Ok(dispatches)
     }
 }

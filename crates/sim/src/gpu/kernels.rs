@@ -1,5 +1,7 @@
 //! The compiled kernels of all stages.
 
+use std::sync::OnceLock;
+
 use strandline_gpu::{Declaration, Dispatches, Gpu, GpuError, Scan};
 
 use super::buffers::Buffers;
@@ -8,30 +10,39 @@ use super::{
     advance, cells, constrain, gather, integrate, lengths_alone, mark, pose_roots, shelter, slide,
     solve_pressure, solve_rods, splat,
 };
+use crate::Model;
 use crate::step::Stage;
-use crate::{Model, Preconditioner};
 
 /// Names the module of each stage, once.
 macro_rules! kernels {
     ($($stage:ident => $module:ident,)*) => {
+        /// Kernels of a stage are compiled when a step first has it.
         pub(super) struct Kernels {
             scan: Scan,
             pub slide: slide::Slide,
-            $(pub $module: $module::Stage,)*
+            $($module: OnceLock<$module::Stage>,)*
         }
 
         impl Kernels {
-            pub fn new(gpu: &Gpu, model: &Model) -> Result<Self, GpuError> {
+            pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
                 Ok(Self {
                     scan: Scan::new(gpu)?,
                     slide: slide::Slide::new(gpu)?,
-                    $($module: $module::Stage::new(gpu, model)?,)*
+                    $($module: OnceLock::new(),)*
                 })
             }
 
-            fn stage(&self, stage: Stage, to: &Target) -> Result<Dispatches, GpuError> {
+            $(pub fn $module(&self, gpu: &Gpu, model: &Model) -> Result<&$module::Stage, GpuError> {
+                if let Some(compiled) = self.$module.get() {
+                    return Ok(compiled);
+                }
+                let compiled = $module::Stage::new(gpu, model)?;
+                Ok(self.$module.get_or_init(|| compiled))
+            })*
+
+            fn stage(&self, stage: Stage, model: &Model, to: &Target) -> Result<Dispatches, GpuError> {
                 match stage {
-                    $(Stage::$stage => self.$module.bind(to),)*
+                    $(Stage::$stage => self.$module(to.gpu, model)?.bind(to),)*
                 }
             }
         }
@@ -61,15 +72,15 @@ kernels! {
 }
 
 impl Kernels {
-    /// Binds a stage to buffers, for the steps that start with the newer positions on a side.
+    /// Binds a stage to buffers, for the steps of a model that start with the newer positions on a side.
     pub fn bind(
         &self,
         stage: Stage,
-        gpu: &Gpu,
+        (gpu, model): (&Gpu, &Model),
         buffers: &Buffers,
         side: usize,
-        preconditioner: Preconditioner,
     ) -> Result<Dispatches, GpuError> {
-        self.stage(stage, &Target { gpu, buffers, side, scan: &self.scan, preconditioner })
+        let preconditioner = model.settings.volume.preconditioner;
+        self.stage(stage, model, &Target { gpu, buffers, side, scan: &self.scan, preconditioner })
     }
 }

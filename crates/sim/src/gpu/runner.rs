@@ -71,7 +71,7 @@ impl GpuRunner {
     /// device refuses.
     pub fn new(gpu: &Gpu, model: Model) -> Result<Self, SimError> {
         model.settings.check_on_gpu()?;
-        let kernels = Kernels::new(gpu, &model)?;
+        let kernels = Kernels::new(gpu)?;
         let state = model.rest_state(BodyFrame::REST);
         Self::with_kernels(gpu, model, Arc::new(kernels), &state)
     }
@@ -329,9 +329,8 @@ impl GpuRunner {
 
     /// Binds the stages for the steps that start with the newer positions on a side.
     fn bind(&self, side: usize) -> Result<Vec<(Stage, Dispatches)>, GpuError> {
-        let preconditioner = self.model.settings.volume.preconditioner;
-        let bind =
-            |stage| Ok((stage, self.kernels.bind(stage, &self.gpu, &self.buffers, side, preconditioner)?));
+        let of = (&self.gpu, &self.model);
+        let bind = |stage| Ok((stage, self.kernels.bind(stage, of, &self.buffers, side)?));
         stages(&self.model.settings).map(bind).collect()
     }
 

@@ -21,7 +21,7 @@ pub(super) trait StageKernels: Sized {
     /// Their declarations, to be compared with their shaders.
     fn declarations() -> Vec<Declaration>;
 
-    /// Compiles the kernels for strands and solids like those of a model.
+    /// Compiles the kernels for strands and solids like those of a model, when a step first has the stage.
     fn new(gpu: &Gpu, model: &Model) -> Result<Self, GpuError>;
 
     /// Dispatches of a step, in order; empty for a stage without work.

@@ -196,8 +196,10 @@ fn a_host_that_never_waits_asks_instead() {
         StrandMethod::Rods => StrandMethod::Constrain,
         StrandMethod::Constrain => StrandMethod::Rods,
     };
+    let compiled = gpu.pipeline_count();
     hair.change(Change::Settings(settings.clone().into())).unwrap();
     pass(&mut hair);
+    assert!(gpu.pipeline_count() > compiled, "stages are compiled when a step first has them");
     let solved = points(&mut hair);
     let step = pulled.iter().zip(&solved).map(|(one, other)| one.distance(*other)).fold(0.0, f32::max);
     assert!(step < 0.1 && solved.iter().all(|point| point.is_finite()), "{step}");

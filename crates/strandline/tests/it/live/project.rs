@@ -27,7 +27,10 @@ fn save(live: &Live, scene: &Scene, folder: &Path) {
     live.send(Command::SaveProject(Box::new(scene.clone()), 1, folder.to_owned()));
     wait(|| {
         live.take_events().into_iter().find_map(|news| match news {
-            LiveEvent::Saved(path) => Some(assert_eq!(path, folder)),
+            LiveEvent::Saved(path) => {
+                assert_eq!(path, folder);
+                Some(())
+            }
             LiveEvent::Error(_, error) => panic!("{error}"),
             _ => None,
         })
@@ -144,7 +147,7 @@ fn frames_of_other_hair_or_another_motion_are_left_out_with_the_reason() {
     std::fs::write(folder.join("scene.toml"), &text).unwrap();
     let mut other = scene.style.clone();
     other.seed += 1;
-    other.grow().unwrap().save(&home.path().join("few.hair")).unwrap();
+    other.grow().unwrap().save(home.path().join("few.hair")).unwrap();
     let (live, notes) = opened(&folder);
     assert!(said(&notes, "left out") && said(&notes, "the content of few.hair"), "{notes:?}");
     assert_eq!(last(&live), 0);
