@@ -2,8 +2,8 @@
 
 use std::marker::PhantomData;
 
-use super::gpu::Compiled;
 use super::kernel::{as_shader_error, bind_group, layouts, shader_module};
+use super::pipelines::Compiled;
 use crate::{Bindings, Declaration, Gpu, GpuError};
 
 /// Declares a drawing: a struct of the buffers and textures that it is bound to.

@@ -1,9 +1,9 @@
-use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use super::errors::{Errors, Refusal, answered, now};
+use super::pipelines::Pipelines;
 use super::wanted::Wanted;
 use crate::{Adapter, Crossed, GpuError};
 
@@ -31,43 +31,6 @@ struct Shared {
     never_waits: AtomicBool,
     kernels: Pipelines<wgpu::ComputePipeline>,
     drawings: Pipelines<wgpu::RenderPipeline>,
-}
-
-/// A compiled kernel or drawing.
-#[derive(Clone, Debug)]
-pub(crate) struct Compiled<P> {
-    pub pipeline: P,
-    pub layout: wgpu::BindGroupLayout,
-}
-
-/// Compiled kernels or drawings, kept for later requests of the same.
-#[derive(Debug)]
-pub(crate) struct Pipelines<P>(Mutex<HashMap<String, Compiled<P>>>);
-
-impl<P> Default for Pipelines<P> {
-    fn default() -> Self {
-        Self(Mutex::default())
-    }
-}
-
-impl<P: Clone> Pipelines<P> {
-    fn count(&self) -> usize {
-        lock(&self.0).len()
-    }
-
-    /// That of a key, compiled at its first use.
-    pub fn get(
-        &self,
-        key: String,
-        compile: impl FnOnce() -> Result<Compiled<P>, GpuError>,
-    ) -> Result<Compiled<P>, GpuError> {
-        if let Some(known) = lock(&self.0).get(&key) {
-            return Ok(known.clone());
-        }
-        let compiled = compile()?;
-        lock(&self.0).insert(key, compiled.clone());
-        Ok(compiled)
-    }
 }
 
 /// Allocated bytes, and the limit.

@@ -3,7 +3,7 @@
 
 use std::marker::PhantomData;
 
-use super::gpu::Compiled;
+use super::pipelines::Compiled;
 use crate::{Gpu, GpuError, Layout};
 
 /// Use of a buffer by a kernel.

@@ -11,6 +11,7 @@ mod gpu;
 mod kernel;
 mod layout;
 mod linked;
+mod pipelines;
 mod readback;
 mod recorder;
 mod rigid;

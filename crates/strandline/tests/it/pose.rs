@@ -103,7 +103,7 @@ fn goes_on(backend: Backend, method: StrandMethod) {
     let moved = apart(&before, &again.state().unwrap().positions);
     assert!(moved > 0.1 / 60.0 && moved < (fast + 3.0) / 60.0, "{moved} m at {fast} m/s");
     // A film begins with it, whatever time settling may take.
-    posed.film.settle = 1.0;
+    posed.film.settle = 0.2;
     let shown = first_picture(&posed);
     let mut fresh = hair(&posed).unwrap();
     let camera = strandline::Prepared::new(&posed).unwrap().camera(64.0 / 48.0);
