@@ -318,7 +318,7 @@ impl App {
                 if strandline::scene::is_file(file) {
                     let path = file.to_owned();
                     let reload = move || Scene::load(&path).map_err(|error| error.to_string());
-                    self.watch.scene_file(file, Box::new(reload));
+                    self.watch.scene_file(&strandline::scene::file_of(file), Box::new(reload));
                 }
                 self.load(scene);
             }

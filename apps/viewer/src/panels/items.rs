@@ -67,7 +67,10 @@ fn show(app: &mut App, ui: &mut Ui, (list, one): (&str, &str), adds: &[Add]) {
             if button(ui, "x", "takes this out; ctrl Z brings it back") {
                 changed = Some(without_item(&app.scene, list, index));
             }
-            let title = format!("{} {}", title(&values, &item, one), index + 1);
+            let title = title(&values, &item).map_or_else(
+                || format!("{one} {}", index + 1),
+                |name| format!("{one} {}: {name}", index + 1),
+            );
             egui::CollapsingHeader::new(title).id_salt(&item).show(ui, |ui| {
                 for found in settings {
                     let name = found.key[item.len() + 1..].replace('_', " ");
@@ -95,8 +98,8 @@ fn show(app: &mut App, ui: &mut Ui, (list, one): (&str, &str), adds: &[Add]) {
 }
 
 /// The words that name an item: its name, its file without folders, or its shape.
-fn title(values: &Values, item: &str, one: &str) -> String {
+fn title<'a>(values: &'a Values, item: &str) -> Option<&'a str> {
     let of = |name: &str| values.get(&format!("{item}.{name}")).and_then(Value::as_str);
     let file = of("file").map(|file| file.rsplit(['/', '\\']).next().unwrap_or(file));
-    of("name").or(file).or_else(|| of("shape")).unwrap_or(one).to_owned()
+    of("name").or(file).or_else(|| of("shape"))
 }

@@ -37,7 +37,7 @@ fn solids_are_added_changed_taken_out_and_undone_in_their_panel() {
     window.click("Add ball");
     settles(&mut window);
     assert_eq!(radius(&window), 0.05);
-    window.toggle("sphere 1");
+    window.toggle("solid 1: sphere");
     settles(&mut window);
     window.type_at(Role::SpinButton, "colliders[0].radius", "8cm");
     settles(&mut window);
@@ -79,7 +79,7 @@ fn ties_and_looks_of_groups_are_added_and_changed_in_their_panels() {
     let mut window = open(two, "Look");
     window.click("Add group");
     settles(&mut window);
-    window.toggle("0 1");
+    window.toggle("group 1: 0");
     settles(&mut window);
     window.type_at(Role::TextInput, "look.group[0].grey", "50%");
     settles(&mut window);

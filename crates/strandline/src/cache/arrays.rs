@@ -42,7 +42,7 @@ pub(super) fn expect(rows: &Rows, name: &str, kind: Kind, shape: &[Option<u64>])
 }
 
 /// Refuses an array that would take too much memory: its bytes in the file times a factor.
-pub(super) fn check_memory(name: &str, bytes: u64, times: u64) -> Result<(), String> {
+pub(crate) fn check_memory(name: &str, bytes: u64, times: u64) -> Result<(), String> {
     memory::check(&[Need::new(format!("the array {name}"), bytes, times)]).map_err(|error| error.to_string())
 }
 

@@ -21,6 +21,7 @@ mod tests;
 mod usd;
 mod usd_text;
 
+pub(crate) use arrays::check_memory;
 pub use out::{Out, OutSettings, Written};
 pub use read::{Cache, check_cache};
 pub(crate) use shape::Leaving;

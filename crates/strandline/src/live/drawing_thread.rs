@@ -282,7 +282,7 @@ impl DrawingThread {
     }
 
     /// Makes the steps that were asked for, without pictures between them unless they are recorded.
-    fn make_steps(&self, playing: &mut Playing) -> Result<(), Error> {
+    pub(super) fn make_steps(&self, playing: &mut Playing) -> Result<(), Error> {
         while playing.steps > 0 && playing.scene.is_some() {
             if playing.recorder.is_some() {
                 self.frame(playing, false)?;

@@ -68,7 +68,7 @@ impl DrawingThread {
 
     /// Saves a project on a thread of its own, after all that the simulation has begun.
     pub(super) fn save_project(&self, playing: &mut Playing, scene: Scene, load: u64, folder: &Path) {
-        if let Err(error) = self.catch_up(playing) {
+        if let Err(error) = self.catch_up(playing).and_then(|()| self.make_steps(playing)) {
             // The last good state is still there.
             self.emit(error.into());
         }

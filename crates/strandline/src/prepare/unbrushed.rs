@@ -1,6 +1,6 @@
 //! Hair and body before the strokes of a brush, kept from one load to the next: a stroke reads no files and grows nothing.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use glam::Vec3;
@@ -76,15 +76,31 @@ impl Unbrushed {
     }
 }
 
-/// The files of a scene as they are now.
+/// The files of a scene as they are now, and those that a .gltf or .obj may name in turn: .bin and .mtl beside it.
 pub(super) fn stamps(scene: &Scene) -> Vec<Stamp> {
     let mut named = scene.clone();
-    let stamp = |path: &mut PathBuf| {
-        let path = scene.path(path);
+    let paths: Vec<PathBuf> = named.paths_mut().map(|path| scene.path(path)).collect();
+    let mut beside: Vec<PathBuf> = paths.iter().flat_map(|path| named_in_turn(path)).collect();
+    beside.sort_unstable();
+    beside.dedup();
+    let stamp = |path: PathBuf| {
         let about = path.metadata().ok().and_then(|about| Some((about.modified().ok()?, about.len())));
         (path, about)
     };
-    named.paths_mut().map(stamp).collect()
+    paths.into_iter().chain(beside).map(stamp).collect()
+}
+
+/// Files that one may name.
+fn named_in_turn(path: &Path) -> Vec<PathBuf> {
+    let is_of =
+        |path: &Path, ending: &str| path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending));
+    let wanted = match path {
+        path if is_of(path, "gltf") => "bin",
+        path if is_of(path, "obj") => "mtl",
+        _ => return Vec::new(),
+    };
+    let all = path.parent().and_then(|folder| folder.read_dir().ok()).into_iter().flatten().flatten();
+    all.map(|entry| entry.path()).filter(|path| is_of(path, wanted)).collect()
 }
 
 /// True where the stages before the strokes do the same for both scenes, the first of which is fitted to its groom: what

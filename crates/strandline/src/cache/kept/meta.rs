@@ -23,6 +23,8 @@ pub(crate) struct Meta {
     pub scene: String,
     /// Files that the motion depends on, in the order of the scene's paths.
     pub files: Vec<FileSum>,
+    /// Checksum of hair and body at rest: grown hair has no file.
+    pub rest: u32,
     /// Guides and their points.
     pub strands: u32,
     pub points: u32,

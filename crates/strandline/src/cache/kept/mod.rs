@@ -19,7 +19,7 @@ fn prefix(mark: usize) -> String {
 }
 
 /// Points as bytes, in the order of the file.
-fn point_bytes(points: &[Vec3Lanes]) -> Vec<u8> {
+pub(crate) fn point_bytes(points: &[Vec3Lanes]) -> Vec<u8> {
     let numbers = points.iter().flat_map(|lanes| [lanes.x, lanes.y, lanes.z]).flatten();
     numbers.flat_map(f32::to_le_bytes).collect()
 }

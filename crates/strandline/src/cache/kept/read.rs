@@ -15,7 +15,7 @@ use super::{
     prefix,
 };
 use crate::{
-    Error,
+    Error, Scene,
     body::BodyFrame,
     cache::{
         MAX_FRAMES, Snapshot,
@@ -173,6 +173,18 @@ fn read_meta<R: Read + Seek>(npz: &mut Npz<R>) -> Result<Meta, String> {
         return Err("meta with frames out of order, expected kept ones after the first".to_owned());
     }
     let scenes = meta.scenes.len();
+    // Each frame and each state has two of its own at most.
+    let most = 2 * (meta.frames.len() + meta.marks.len());
+    if scenes > most {
+        return Err(format!("{scenes} scenes, expected {most} at most"));
+    }
+    check_memory("scenes", (scenes * size_of::<Scene>()) as u64, 1)?;
+    let mut marked: Vec<u32> = meta.marks.iter().map(|mark| mark.frame).collect();
+    marked.sort_unstable();
+    marked.dedup();
+    if marked.len() < meta.marks.len() {
+        return Err("two states of a frame, expected one".to_owned());
+    }
     if meta.marks.iter().any(|mark| mark.scene >= scenes) {
         return Err(format!("a mark with a scene that is not there, expected one of {scenes}"));
     }
@@ -209,6 +221,10 @@ mod tests {
         assert!(of(&whole).contains("expected times"), "{}", of(&whole));
         assert!(of(&Meta { strands: 9, ..whole.clone() }).contains("9 strands of 4 points"));
         let marks = vec![MarkNote { frame: 7, ..MarkNote::default() }];
-        assert!(of(&Meta { marks, ..whole }).contains("out of order"));
+        assert!(of(&Meta { marks, ..whole.clone() }).contains("out of order"));
+        let marks = vec![MarkNote::default(); 2];
+        let scenes = vec![String::new(); 7];
+        assert!(of(&Meta { marks: marks.clone(), scenes, ..whole.clone() }).contains("7 scenes, expected 6"));
+        assert!(of(&Meta { marks, scenes: vec![String::new()], ..whole }).contains("two states"));
     }
 }

@@ -57,8 +57,25 @@ pub(crate) fn write<'a>(
     let part = path.with_added_extension("part");
     // A part that a killed run left.
     let _ = std::fs::remove_file(&part);
-    let mut npz = GrowingNpz::create(&part, &fixed, &growing, bodies.len().max(1) as u64, &[json(&meta)])?;
-    drop(fixed);
+    let written = rows_into(&part, meta, &fixed, &growing, (bodies, lists), frame, tell);
+    if written.is_err() {
+        let _ = std::fs::remove_file(&part);
+    }
+    written?;
+    std::fs::rename(&part, path)
+}
+
+/// Writes the arrays to a file: those that are fixed, and the growing ones row by row.
+fn rows_into<'a>(
+    part: &Path,
+    mut meta: Meta,
+    fixed: &[Array],
+    growing: &[Growing],
+    (bodies, lists): (&[BodyFrame], Lists),
+    frame: impl Fn(usize) -> Result<(f64, Cow<'a, [Vec3Lanes]>)>,
+    tell: impl Fn(usize),
+) -> Result<()> {
+    let mut npz = GrowingNpz::create(part, fixed, growing, bodies.len().max(1) as u64, &[json(&meta)])?;
     let from = meta.frames.len() - bodies.len();
     for (row, body) in bodies.iter().enumerate() {
         let (time, points) = frame(row)?;
@@ -71,7 +88,7 @@ pub(crate) fn write<'a>(
         tell(row + 1);
     }
     npz.finish(&[json(&meta)])?;
-    std::fs::rename(&part, path)
+    Ok(())
 }
 
 /// A frame as bytes, an array after the other, and their checksum.

@@ -49,7 +49,8 @@ impl Scenes {
 
     /// Notes of the tasks that led to a frame; `None` where one of them is of another kind of run.
     pub fn notes(&mut self, (before, live): &(Vec<Task>, Live)) -> Option<Vec<TaskNote>> {
-        let mut notes = before.iter().map(|task| self.note(task)).collect::<Option<Vec<_>>>()?;
+        let done = before.iter().filter(|task| !is_refused(task));
+        let mut notes = done.map(|task| self.note(task)).collect::<Option<Vec<_>>>()?;
         let Live { until, offset, weather, hand, .. } = live;
         notes.push(TaskNote::Live {
             until: until.to_bits(),
@@ -73,6 +74,16 @@ impl Scenes {
             Task::Release => TaskNote::Release,
             Task::Film { .. } | Task::Cached { .. } | Task::Live(_) | Task::Reset { .. } => return None,
         })
+    }
+}
+
+/// True for a task that the simulation refused when it came, and refuses again: it changed nothing.
+fn is_refused(task: &Task) -> bool {
+    match task {
+        Task::Settings(settings) => settings.check().is_err(),
+        Task::Lengths(scales) => !scales.iter().all(|scale| State::LENGTH_SCALES.contains(scale)),
+        Task::Grab { radius, .. } => !(*radius > 0.0),
+        _ => false,
     }
 }
 

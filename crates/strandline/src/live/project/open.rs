@@ -11,7 +11,7 @@ use crate::{
     Error, Scene,
     body::BodyFrame,
     cache::{
-        Snapshot,
+        Snapshot, check_memory,
         kept::{FrameNote, KeptFile, MarkNote},
     },
     groom::block_count,
@@ -20,8 +20,11 @@ use crate::{
     sim::{Clock, StepReport},
 };
 
+/// Time \[s\] between a frame and its state that is more than a slow machine loses.
+const MOST_APART: f64 = 10.0;
+
 /// Fills a timeline with the kept frames that a scene names, and brings the simulation to the last of them. Returns notes
-/// for a person; `None` where there are no such frames, with the reason among the notes.
+/// for a person, and true where frames were read; else the reason is among the notes.
 pub fn open<E: Executor>(
     scene: &Scene,
     session: &mut Session<E>,
@@ -46,6 +49,11 @@ fn restore<E: Executor>(
     let shape = [guides.strand_count(), guides.points_per_strand()];
     let mut file = KeptFile::open(path, shape)?;
     check_same(&file, path, scene)?;
+    if file.meta.rest != sums::of_rest(session) {
+        return Err(refuse(
+            "they are of hair or a body of another shape at rest, play to simulate them".to_owned(),
+        ));
+    }
     if file.meta.origin.map(f32::from_bits) != session.origin().to_array() {
         return Err(refuse("frames about another origin, expected that of the scene".to_owned()));
     }
@@ -112,7 +120,14 @@ fn fill<E: Executor>(
         if made.is_none() && bookmark.is_none() {
             return Err(format!("frame {number} without a way to it, expected tasks or a state"));
         }
-        before = made.as_ref().map(|(_, live)| live.until);
+        let ended = made.as_ref().map(|(_, live)| live.until);
+        let reached = bookmark.as_ref().map(|mark| mark.clock.time());
+        if let (Some(ended), Some(reached)) = (ended, reached)
+            && !((reached - ended).abs() < MOST_APART)
+        {
+            return Err(format!("frame {number} ends at {ended} s, its state is at {reached} s"));
+        }
+        before = ended.or(reached);
         let reports = reports_of(&note);
         let mut frame =
             Frame { points: None, body: BodyFrame::REST, origin, time: 0.0, made, bookmark, reports };
@@ -133,23 +148,31 @@ fn scenes_of(texts: &[String]) -> Result<Vec<Scene>, String> {
 
 type Marks = Vec<(u32, Option<Arc<Bookmark>>)>;
 
+/// States, whose memory is counted as they are read.
 fn marks_of<E: Executor>(
     file: &mut KeptFile,
     scenes: &[Scene],
     session: &mut Session<E>,
 ) -> Result<Marks, String> {
-    let mut marks = Vec::new();
+    let (mut marks, mut bytes) = (Vec::new(), 0_u64);
     for (index, note) in file.meta.marks.clone().into_iter().enumerate() {
         let Snapshot { state, bodies, .. } = file.mark(index)?;
         let [before, now, end] = bodies.map(|body| session.recognized(body));
-        let clock = clock_of(&note)?;
+        let (clock, settings) = (clock_of(&note)?, scenes[note.scene].simulation.clone());
+        if clock.time_step() != Clock::new(settings.time_step).time_step() {
+            return Err(format!(
+                "a clock of steps of {} s, expected {} s",
+                clock.time_step(),
+                settings.time_step
+            ));
+        }
         let (share, passed) = (f32::from_bits(note.share), f64::from_bits(note.passed));
         if !(0.0..=1.0).contains(&share) || !(passed.abs() < 1e9) {
             return Err(format!("a state with {passed} s and the share {share}, expected times"));
         }
         let mark = Bookmark {
             state,
-            settings: scenes[note.scene].simulation.clone(),
+            settings,
             clock,
             share,
             exact: note.is_exact.then(|| end.clone()),
@@ -157,6 +180,8 @@ fn marks_of<E: Executor>(
             end,
             passed,
         };
+        bytes += mark.bytes();
+        check_memory("states", bytes, 1)?;
         marks.push((note.frame, Some(Arc::new(mark))));
     }
     Ok(marks)

@@ -16,7 +16,7 @@ use crate::{
         kept::{self, DirectionNote, FrameNote, MarkNote, Meta},
         relative,
     },
-    live::timeline::{Points, Timeline},
+    live::timeline::{Frame, Points, Timeline},
     scene::PROJECT_SCENE,
     session::{Bookmark, Executor, Session, Simulation},
     sim::StepReport,
@@ -47,17 +47,21 @@ pub fn save<E: Executor>(
     tell: impl Fn(f32) + Send + 'static,
     done: impl FnOnce(Result<PathBuf, Error>) + Send + 'static,
 ) -> Result<JoinHandle<()>, Error> {
+    check_place(folder)?;
     std::fs::create_dir_all(folder).map_err(Error::save("the project", folder))?;
     scene.timeline.frames = None;
     let mut scenes = Scenes::default();
-    let marks = marks_of(session, timeline)?;
+    let tasks = |frame: &Frame| frame.made.as_ref().and_then(|made| scenes.notes(made));
+    let tasks: Vec<_> = timeline.up_to_date().map(tasks).collect();
+    let [first, ..] = timeline.bounds();
+    let alone = |number: u32| tasks.get((number - first) as usize).is_none_or(Option::is_none);
+    let marks = marks_of(session, timeline, alone)?;
     let origin = session.origin();
     let mut meta = meta_of(session, timeline);
     meta.origin = origin.to_array().map(f32::to_bits);
     meta.marks = marks.iter().map(|(frame, mark)| note_of(*frame, mark, &mut scenes)).collect();
     let (mut bodies, mut frames) = (Vec::new(), Vec::new());
-    for frame in timeline.up_to_date() {
-        let tasks = frame.made.as_ref().and_then(|made| scenes.notes(made));
+    for (frame, tasks) in timeline.up_to_date().zip(tasks) {
         let steps = frame.reports.iter().map(step_of).collect();
         meta.frames.push(FrameNote { sum: 0, tasks, steps });
         if let Some(points) = &frame.points {
@@ -79,6 +83,21 @@ pub fn save<E: Executor>(
     std::thread::Builder::new().name("saving".to_owned()).spawn(write).map_err(Error::Thread)
 }
 
+/// Refuses a folder with files that are none of a project.
+fn check_place(folder: &Path) -> Result<(), Error> {
+    let (scene, frames) = (folder.join(PROJECT_SCENE), folder.join(FRAMES));
+    let names_frames = |scene: Scene| scene.timeline.frames.as_deref() == Some(Path::new(FRAMES));
+    let is_project = || Scene::load(&scene).is_ok_and(names_frames);
+    if (!scene.exists() && !frames.exists()) || is_project() {
+        return Ok(());
+    }
+    let taken = io::Error::new(
+        io::ErrorKind::AlreadyExists,
+        format!("it holds {PROJECT_SCENE} or {FRAMES} that are of no project: choose another folder"),
+    );
+    Err(Error::save("the project", folder)(taken))
+}
+
 /// Metadata without frames and marks.
 fn meta_of<E: Executor>(session: &Session<E>, timeline: &Timeline) -> Meta {
     let [first, kept, good] = timeline.bounds();
@@ -90,15 +109,18 @@ fn meta_of<E: Executor>(session: &Session<E>, timeline: &Timeline) -> Meta {
         first,
         kept,
         shown: timeline.playhead.min(good),
+        rest: sums::of_rest(session),
         direction: DirectionNote { begun: begun.to_bits(), offset: offset.to_bits(), begins },
         ..Meta::default()
     }
 }
 
-/// States of the project: those of the timeline, and that of the last frame where the simulation is there.
+/// States of the project: those of the timeline, and that of the last frame where the simulation is there. `alone` tells
+/// the frames to which nothing else leads.
 fn marks_of<E: Executor>(
     session: &mut Session<E>,
     timeline: &Timeline,
+    alone: impl Fn(u32) -> bool,
 ) -> Result<Vec<(u32, Arc<Bookmark>)>, Error> {
     let [first, _, good] = timeline.bounds();
     let numbered = (first..).zip(timeline.up_to_date());
@@ -112,8 +134,11 @@ fn marks_of<E: Executor>(
     while marks.len() > 2 && bytes(&marks) > MOST_MARKS {
         // Every second goes; the first and the last stay.
         let last = marks.len() - 1;
-        let thinned = marks.iter().enumerate().filter(|(index, _)| index % 2 == 0 || *index == last);
-        let thinned: Vec<_> = thinned.map(|(_, mark)| mark.clone()).collect();
+        let stays = |(index, mark): &(usize, &(u32, _))| index % 2 == 0 || *index == last || alone(mark.0);
+        let thinned: Vec<_> = marks.iter().enumerate().filter(stays).map(|(_, mark)| mark.clone()).collect();
+        if thinned.len() == marks.len() {
+            break;
+        }
         marks = thinned;
     }
     Ok(marks)
@@ -137,7 +162,7 @@ fn step_of(step: &StepReport) -> ([u32; 3], u64) {
 }
 
 impl Project {
-    /// Writes the frames, then the scene that names them: a scene never names frames that are not whole.
+    /// Writes both files under temporary names, then renames the frames and the scene that names them.
     fn write(self, tell: impl Fn(f32)) -> Result<PathBuf, Error> {
         let Self { folder, scene, mut meta, marks, bodies, frames } = self;
         let (place, path) = (folder.join(FRAMES), folder.join(PROJECT_SCENE));
@@ -156,9 +181,11 @@ impl Project {
             }
         };
         let text = meta.scene.clone();
+        let written = WholeFile::write(&path, |file| io::Write::write_all(file, text.as_bytes()))
+            .map_err(Error::save("the scene", &path))?;
         kept::write(&place, meta, &marks, &bodies, points, part)
             .map_err(Error::save("the kept frames", &place))?;
-        WholeFile::save(&path, text.as_bytes()).map_err(Error::save("the scene", &path))?;
+        written.keep().map_err(Error::save("the scene", &path))?;
         Ok(folder)
     }
 }

@@ -3,7 +3,13 @@
 use std::io::{Read, Result};
 use std::path::Path;
 
-use crate::{Scene, cache::kept::FileSum, render::Look, scene::SurroundingsSection};
+use crate::{
+    Scene,
+    cache::kept::{FileSum, point_bytes},
+    render::Look,
+    scene::SurroundingsSection,
+    session::{Executor, Session},
+};
 
 /// Sums of the files of a scene that decide how its hair moves, in the order of its paths. A file that cannot be read has
 /// the sum of an empty one.
@@ -13,6 +19,19 @@ pub fn of(scene: &Scene) -> Vec<FileSum> {
     let pose = bare.groom.pose.take();
     let paths: Vec<_> = bare.paths_mut().map(|path| path.clone()).chain(pose).collect();
     paths.iter().map(|path| sum(&scene.path(path))).collect()
+}
+
+/// Sum of the guides and the body of a session at rest.
+pub fn of_rest<E: Executor>(session: &Session<E>) -> u32 {
+    let mut sum = crc32fast::Hasher::new();
+    sum.update(&point_bytes(session.view().guides().positions()));
+    if let Some(mesh) = session.view().body() {
+        let places = mesh.positions.iter().flat_map(|place| place.to_array().map(f32::to_le_bytes));
+        places.for_each(|number| sum.update(&number));
+        let corners = mesh.triangles.iter().flatten().map(|corner| corner.to_le_bytes());
+        corners.for_each(|number| sum.update(&number));
+    }
+    sum.finalize()
 }
 
 fn sum(path: &Path) -> FileSum {

@@ -125,8 +125,24 @@ fn frames_of_other_hair_or_another_motion_are_left_out_with_the_reason() {
     let folder = home.path().join("project");
     let scene = scene_of_file(home.path());
     let live = paused(scene.clone());
+    let fitted = fitted(&live);
     steps(&live, 3);
-    save(&live, &fitted(&live), &folder);
+    // A scene of a person's own is not written over, a project is.
+    let own = home.path().join("own");
+    std::fs::create_dir(&own).unwrap();
+    std::fs::write(own.join("scene.toml"), "# mine\n").unwrap();
+    live.send(Command::SaveProject(Box::new(fitted.clone()), 1, own.clone()));
+    let refused = wait(|| {
+        live.take_events().into_iter().find_map(|news| match news {
+            LiveEvent::Error(_, error) => Some(error.to_string()),
+            LiveEvent::Saved(_) => panic!("written over"),
+            _ => None,
+        })
+    });
+    assert!(refused.contains("choose another folder"), "{refused}");
+    assert_eq!(std::fs::read(own.join("scene.toml")).unwrap(), b"# mine\n");
+    (0..2).for_each(|_| save(&live, &fitted, &folder));
+    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 2, "nothing temporary is left");
     drop(live);
     let text = std::fs::read_to_string(folder.join("scene.toml")).unwrap();
     assert!(text.contains("file = \"../few.hair\""), "its paths start from the folder");
@@ -189,6 +205,20 @@ fn damaged_frames_are_refused_and_the_scene_opens_without_them() {
     let layout = good.windows(10).position(|words| words == b"\"layout\":1").unwrap();
     let mut newer = good.clone();
     newer[layout + 9] = b'2';
+    // Hair that this version grows otherwise.
+    let rest = good.windows(7).position(|words| words == b"\"rest\":").unwrap() + 7;
+    let mut other = good.clone();
+    let digit = rest + good[rest..].iter().position(|byte| *byte == b',').unwrap() - 1;
+    other[digit] = b'0' + (other[digit] - b'0' + 1) % 10;
+    let damaged = told(&live, &other).join(" ");
+    // The message has the checksum of the file's part as it is and as it should be.
+    let mut sums =
+        damaged.split("checksum 0x").skip(1).map(|rest| u32::from_str_radix(&rest[..8], 16).unwrap());
+    let [now, before] = [sums.next().unwrap(), sums.next().unwrap()].map(u32::to_le_bytes);
+    let places: Vec<usize> = (0..other.len() - 3).filter(|at| other[*at..at + 4] == before).collect();
+    places.into_iter().for_each(|at| other[at..at + 4].copy_from_slice(&now));
+    let notes = told(&live, &other);
+    assert!(said(&notes, "of another shape at rest"), "{notes:?}");
     let cases = [&good[..good.len() / 2], &[], b"PK nothing", &newer];
     for bytes in cases {
         let notes = told(&live, bytes);
