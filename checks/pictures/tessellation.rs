@@ -19,7 +19,9 @@ fn guides(strand_count: usize) -> Guides {
 
 fn curves(guides: &Guides, level: &DetailLevel) -> Curves {
     let mut curves = Curves::default();
-    tessellate(guides.positions(), guides, &Pose::IDENTITY, level, &mut curves);
+    let drawn =
+        level.drawn_lanes().taken(guides.positions(), guides.strand_count(), guides.points_per_strand());
+    tessellate(&drawn, guides, &Pose::IDENTITY, level, &mut curves);
     curves
 }
 
