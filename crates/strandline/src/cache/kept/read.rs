@@ -173,8 +173,9 @@ fn read_meta<R: Read + Seek>(npz: &mut Npz<R>) -> Result<Meta, String> {
         return Err("meta with frames out of order, expected kept ones after the first".to_owned());
     }
     let scenes = meta.scenes.len();
-    // Each frame and each state has two of its own at most.
-    let most = 2 * (meta.frames.len() + meta.marks.len());
+    // Tasks and states have one of their own at most.
+    let tasks = meta.frames.iter().filter_map(|frame| frame.tasks.as_ref()).map(Vec::len).sum::<usize>();
+    let most = tasks + meta.marks.len();
     if scenes > most {
         return Err(format!("{scenes} scenes, expected {most} at most"));
     }
@@ -224,7 +225,7 @@ mod tests {
         assert!(of(&Meta { marks, ..whole.clone() }).contains("out of order"));
         let marks = vec![MarkNote::default(); 2];
         let scenes = vec![String::new(); 7];
-        assert!(of(&Meta { marks: marks.clone(), scenes, ..whole.clone() }).contains("7 scenes, expected 6"));
+        assert!(of(&Meta { marks: marks.clone(), scenes, ..whole.clone() }).contains("7 scenes, expected 2"));
         assert!(of(&Meta { marks, scenes: vec![String::new()], ..whole }).contains("two states"));
     }
 }
