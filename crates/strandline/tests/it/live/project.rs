@@ -72,6 +72,11 @@ fn swing(live: &Live, scene: &mut Scene) {
     }
     live.send(breeze());
     steps(live, 4);
+    // A slider that is dragged leaves many settings before one frame.
+    for tick in 0..60 {
+        let damping = 0.05 + 0.01 * tick as f32;
+        live.send(Change::Settings(Box::new(Settings { damping, ..scene.simulation.clone() })));
+    }
     scene.simulation.damping = 2.0 * scene.simulation.damping.max(0.1);
     scene.groom.length = 0.9;
     live.send(Change::Settings(Box::new(scene.simulation.clone())));
