@@ -263,6 +263,15 @@ impl Person {
         self.program.try_wait().unwrap().is_none()
     }
 
+    /// Seconds that the program has computed until now, on all threads.
+    pub fn cpu_seconds(&self) -> f64 {
+        let text = std::fs::read_to_string(format!("/proc/{}/stat", self.program.id())).unwrap();
+        let (_, fields) = text.rsplit_once(')').unwrap();
+        let ticks = |field: usize| fields.split_whitespace().nth(field).unwrap().parse::<u64>().unwrap();
+        // Fields 14 and 15 of proc_pid_stat(5), in ticks of 10 ms; what follows the name begins with field 3.
+        (ticks(11) + ticks(12)) as f64 / 100.0
+    }
+
     /// Memory of the program that is resident now \[MiB\].
     pub fn memory(&self) -> u64 {
         let text = std::fs::read_to_string(format!("/proc/{}/status", self.program.id())).unwrap();
