@@ -50,7 +50,7 @@ fn the_fibre_of_chiang_agrees_point_by_point() {
         both.look.fibre.chiang.pigment = pigment;
         both.look.fibre.chiang.tip_pigment = 0.7;
         // Colours of the groom are compared in all cells.
-        both.look.fibre.chiang.cells = 24;
+        both.look.fibre.chiang.cells = 12;
         agree(both, body);
     }
 }

@@ -34,7 +34,7 @@ impl Mannequin {
     ///
     /// Materials: `skin` has no colour of its own, `eyes` have. Coordinates are those of [`crate::Root::uv`], v down.
     pub fn figure(&self) -> Mesh {
-        let mut mesh = self.coarse_mesh();
+        let mut mesh = self.coarse_mesh(2.0);
         for round in 0..ROUNDS {
             self.refine(&mut mesh, round);
         }

@@ -19,9 +19,10 @@ impl Mannequin {
         mesh(self, SPACING)
     }
 
-    /// As [`Mannequin::mesh`], of samples twice as far apart: to be split where the skin has details.
-    pub(super) fn coarse_mesh(&self) -> Mesh {
-        mesh(self, 2.0 * SPACING)
+    /// As [`Mannequin::mesh`], of samples this many times as far apart, at least once: with 2 a quarter of the
+    /// triangles.
+    pub fn coarse_mesh(&self, times: f32) -> Mesh {
+        mesh(self, times.max(1.0) * SPACING)
     }
 
     /// Carries a place near the skin \[m\] onto it: the place on the skin and its unit normal.
