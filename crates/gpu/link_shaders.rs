@@ -11,8 +11,9 @@ mod threads;
 const KIT: &str = include_str!("kit/kit.wesl");
 
 /// The modules of signed distances that simulation and pictures import, with a module `solid_rows` of their own.
-const SOLIDS: [(&str, &str); 4] = [
+const SOLIDS: [(&str, &str); 5] = [
     ("solid_table", include_str!("../body/src/solid_table.wesl")),
+    ("skin_side", include_str!("../body/src/skin_side.wesl")),
     ("skin_table", include_str!("../body/src/skin_table.wesl")),
     ("skins", include_str!("../body/src/skins.wesl")),
     ("triangle_place", include_str!("../body/src/triangle_place.wesl")),

@@ -145,6 +145,12 @@ impl PosedSkin {
     /// The same; farther than 3 cm outside a lower bound of the distance, no less than 0.8 of it, and the gradient at about
     /// the nearest place.
     pub fn near(&self, point: Vec3, before: u32) -> SkinPlace {
+        let is_known = (before as usize) < self.solid.triangles.len();
+        if is_known
+            && point.distance_squared(nearest_on(self.corners(&self.end, before), point).0) <= FAR * FAR
+        {
+            return self.nearest(point, before);
+        }
         let (triangle, squared) = self.search(point, before, QUICK);
         if squared > FAR * FAR {
             let found = self.seen(point, triangle, squared.sqrt());

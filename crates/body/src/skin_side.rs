@@ -6,6 +6,7 @@ use glam::{DVec2, Vec3};
 use crate::PosedSkin;
 use crate::nearest_corner::{Feature, nearest_on};
 use crate::posed_skin::DEPTH;
+use crate::skin_line::crossing;
 use crate::skin_solid::NONE;
 
 /// A half line along an axis.
@@ -96,33 +97,15 @@ impl Ray {
         holds(u) && holds(v) && (end[self.axis] - self.origin[self.axis]) * self.way >= 0.0
     }
 
-    /// 1 where it leaves through the front of a triangle, -1 where it enters, 0 where it passes. A line through an edge
-    /// crosses one of the two triangles there.
+    /// 1 where it leaves through the front of a triangle, -1 where it enters, 0 where it passes.
     fn crossing(&self, corners: [Vec3; 3]) -> i32 {
         let [u, v] = self.across();
         let flat = corners.map(|corner| {
             let corner = corner.as_dvec3() - self.origin.as_dvec3();
             (DVec2::new(corner[u], corner[v]), corner[self.axis])
         });
-        let mut turns = 0;
-        for side in 0..3 {
-            let (start, end) = (flat[side].0, flat[(side + 1) % 3].0);
-            let rises = end.y > 0.0;
-            if (start.y > 0.0) == rises {
-                continue;
-            }
-            // The same numbers in the same order from either triangle at an edge.
-            let (low, high) = if rises { (start, end) } else { (end, start) };
-            let is_right = low.perp_dot(high) > 0.0;
-            turns += i32::from(is_right) * if rises { 1 } else { -1 };
-        }
-        if turns == 0 {
-            return 0;
-        }
-        // Height of the plane above the origin of the line, by the areas that the origin cuts off.
-        let areas = [0, 1, 2].map(|side| flat[(side + 1) % 3].0.perp_dot(flat[(side + 2) % 3].0));
-        let height = flat.iter().zip(areas).map(|((_, height), area)| height * area).sum::<f64>();
-        let is_ahead = height / areas.iter().sum::<f64>() * f64::from(self.way) > 0.0;
+        let Some((height, turns)) = crossing(flat) else { return 0 };
+        let is_ahead = height * f64::from(self.way) > 0.0;
         if is_ahead { turns * self.way as i32 } else { 0 }
     }
 }

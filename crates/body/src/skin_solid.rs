@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::{Vec3, Vec3A};
+use strandline_base::par::prelude::*;
 
 use crate::mesh_distance::skin_triangles;
 use crate::welding::welded_vertices;
@@ -124,21 +125,20 @@ impl SkinSolid {
 
     /// Boxes of all nodes about positions \[m\]: their least and greatest corners.
     pub(crate) fn boxes_about(&self, positions: &[Vec3]) -> Vec<[Vec3A; 2]> {
+        let about = |node: &SkinNode| {
+            let triangles = &self.triangles[node.range[0] as usize..node.range[1] as usize];
+            let corners = triangles.iter().flatten().map(|corner| Vec3A::from(positions[*corner as usize]));
+            corners.fold([Vec3A::INFINITY, Vec3A::NEG_INFINITY], |[min, max], corner| {
+                [min.min(corner), max.max(corner)]
+            })
+        };
         let mut boxes = vec![[Vec3A::ZERO; 2]; self.nodes.len()];
+        let leaves = boxes.par_iter_mut().zip(&self.nodes).with_min_len(512);
+        leaves.filter(|(_, node)| node.right == 0).for_each(|(corners, node)| *corners = about(node));
         // Children lie behind their parents.
-        for (index, node) in self.nodes.iter().enumerate().rev() {
-            boxes[index] = if node.right == 0 {
-                let triangles = &self.triangles[node.range[0] as usize..node.range[1] as usize];
-                let corners = triangles.iter().flatten();
-                corners
-                    .map(|corner| Vec3A::from(positions[*corner as usize]))
-                    .fold([Vec3A::INFINITY, Vec3A::NEG_INFINITY], |[min, max], corner| {
-                        [min.min(corner), max.max(corner)]
-                    })
-            } else {
-                let [left, right] = [boxes[index + 1], boxes[node.right as usize]];
-                [left[0].min(right[0]), left[1].max(right[1])]
-            };
+        for (index, node) in self.nodes.iter().enumerate().rev().filter(|(_, node)| node.right > 0) {
+            let [left, right] = [boxes[index + 1], boxes[node.right as usize]];
+            boxes[index] = [left[0].min(right[0]), left[1].max(right[1])];
         }
         boxes
     }

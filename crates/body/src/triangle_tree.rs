@@ -15,10 +15,12 @@ const DEPTH: usize = 40;
 /// A tree of boxes over triangles.
 pub(crate) struct TriangleTree<'a> {
     triangles: Cow<'a, [Corners]>,
-    /// Their planes.
-    planes: Vec<Plane>,
     /// The triangles of the tree, those of a leaf beside each other.
     order: Vec<u32>,
+    /// Their planes, in this order.
+    planes: Vec<Plane>,
+    /// Place of each triangle in this order; meaningless for one that is not in the tree.
+    places: Vec<u32>,
     nodes: Vec<Node>,
 }
 
@@ -51,9 +53,9 @@ impl Node {
         (point - point.clamp(self.min, self.max)).length_squared()
     }
 
-    /// Order of two children: by distance, and by their middles if both boxes hold the point.
-    fn key(&self, point: DVec3) -> (f64, f64) {
-        (self.distance_squared(point), (0.5 * (self.min + self.max) - point).length_squared())
+    /// Squared distance of its middle, which tells the order of two children where both boxes hold the point.
+    fn middle_squared(&self, point: DVec3) -> f64 {
+        (0.5 * (self.min + self.max) - point).length_squared()
     }
 }
 
@@ -61,11 +63,15 @@ impl<'a> TriangleTree<'a> {
     /// A tree over those of the triangles that `order` lists.
     pub fn new(triangles: impl Into<Cow<'a, [Corners]>>, order: Vec<u32>) -> Self {
         let triangles = triangles.into();
-        let planes = triangles.iter().map(Plane::of).collect();
-        let mut tree = Self { triangles, planes, nodes: Vec::with_capacity(order.len()), order };
+        let (planes, places) = (Vec::new(), vec![0; triangles.len()]);
+        let mut tree = Self { triangles, planes, places, nodes: Vec::with_capacity(order.len()), order };
         let count = tree.order.len();
         if count > 0 {
             tree.grow(0, count);
+        }
+        tree.planes = tree.order.iter().map(|index| Plane::of(&tree.triangles[*index as usize])).collect();
+        for (place, index) in (0..).zip(&tree.order) {
+            tree.places[*index as usize] = place;
         }
         tree
     }
@@ -102,10 +108,17 @@ impl<'a> TriangleTree<'a> {
         &self.triangles
     }
 
-    /// Takes a triangle for the nearest where it is nearer.
+    /// Takes a triangle of the tree for the nearest where it is nearer.
     pub fn offer(&self, triangle: u32, point: DVec3, nearest: &mut Nearest) {
-        let at = triangle as usize;
-        if let Some(squared) = nearer_than(&self.triangles[at], &self.planes[at], point, nearest.squared) {
+        self.offer_at(self.places[triangle as usize] as usize, point, nearest);
+    }
+
+    /// The same of the triangle at a place of the order.
+    #[inline]
+    fn offer_at(&self, place: usize, point: DVec3, nearest: &mut Nearest) {
+        let triangle = self.order[place];
+        let corners = &self.triangles[triangle as usize];
+        if let Some(squared) = nearer_than(corners, &self.planes[place], point, nearest.squared) {
             *nearest = Nearest { squared, triangle };
         }
     }
@@ -124,17 +137,20 @@ impl<'a> TriangleTree<'a> {
             }
             let node = &self.nodes[index as usize];
             if node.right == 0 {
-                for triangle in &self.order[node.range[0] as usize..node.range[1] as usize] {
-                    self.offer(*triangle, point, nearest);
+                for place in node.range[0] as usize..node.range[1] as usize {
+                    self.offer_at(place, point, nearest);
                     seen += 1;
                 }
                 continue;
             }
-            let children =
-                [index + 1, node.right].map(|child| (self.nodes[child as usize].key(point), child));
-            let [near, far] =
-                if children[0].0 <= children[1].0 { children } else { [children[1], children[0]] };
-            for ((squared, _), child) in [far, near] {
+            let children = [index + 1, node.right];
+            let [left, right] = children.map(|child| &self.nodes[child as usize]);
+            let [here, there] = [left, right].map(|child| child.distance_squared(point));
+            let is_left_first =
+                here < there || (here == there && left.middle_squared(point) <= right.middle_squared(point));
+            let children = [(here, children[0]), (there, children[1])];
+            let [near, far] = if is_left_first { children } else { [children[1], children[0]] };
+            for (squared, child) in [far, near] {
                 if squared < nearest.squared {
                     waiting[count] = (squared, child);
                     count += 1;

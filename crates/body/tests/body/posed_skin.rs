@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 use std::sync::Arc;
 
 use glam::{DVec3, Quat, Vec3, vec3};
-use strandline_body::{DistanceGrid, Mannequin, Mesh, PosedSkin, SkinSolid};
+use strandline_body::{DistanceGrid, Mannequin, Mesh, Places, PosedSkin, SkinSolid};
 
 /// Winding number of a closed mesh around a point, by solid angles \[Jacobson2013\].
 fn winding(mesh: &Mesh, point: Vec3) -> f64 {
@@ -233,4 +233,43 @@ fn a_bound_carried_through_a_step_is_no_more_than_the_distance_after_it() {
     }
     assert!(held > 20, "{held} bounds fall by little: they are local");
     assert!(tight > -1e-3, "the most that the skin comes nearer is nearly the bound: {tight}");
+}
+
+/// The tube goes around more than once: its ends lie in each other.
+#[test]
+fn a_line_tells_the_sides_of_its_places_in_a_skin_that_passes_through_itself() {
+    let mesh = tube();
+    let solid = solid(&mesh, 0.01);
+    let skin = bent(&mesh, 6.9);
+    let posed = PosedSkin::new(&solid, [None, Some(&skin)]).unwrap();
+    let deformed = Mesh::new(skin.to_vec(), mesh.triangles.clone()).unwrap().closed();
+    let (mut inside, mut twice, mut behind) = (0, 0, 0);
+    for line in 0..60 {
+        let share = |step: f32| (step * (line + 1) as f32).fract() - 0.5;
+        let around = vec3(share(0.618_034), share(0.754_878), share(0.569_84));
+        let step = if line % 6 < 3 { Vec3::AXES[line % 3] } else { around.normalize() } * 0.007;
+        let first = deformed.positions[17 * line] + 0.08 * around - 10.0 * step;
+        let sides = posed.sides_along(&Places { first, step, count: 40 });
+        for place in 0..40 {
+            let point = first + step * place as f32;
+            let around = winding(&deformed, point);
+            twice += usize::from(around > 1.5);
+            inside += usize::from(around > 0.5);
+            assert_eq!(
+                sides.inside >> place & 1 == 1,
+                around > 0.5,
+                "place {place} of line {line}: {around}"
+            );
+        }
+        assert_eq!(sides.inside >> 40, 0);
+        if sides.behind < 1.0 {
+            behind += 1;
+            let place = first - step.normalize() * sides.behind;
+            assert!(posed.nearest(place, PosedSkin::UNKNOWN).distance.abs() < 1e-5, "line {line}");
+            let half = winding(&deformed, first - step.normalize() * (0.5 * sides.behind));
+            assert!((half - winding(&deformed, first)).abs() < 0.1, "line {line}: skin between");
+        }
+    }
+    assert!(inside > 300 && twice > 20 && behind > 10, "{inside} inside, {twice} twice, {behind}");
+    assert_eq!(posed.sides_along(&Places { first: Vec3::NAN, step: Vec3::X, count: 9 }).inside, 0);
 }

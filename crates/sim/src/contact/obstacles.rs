@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use strandline_body::{BodyFrame, Carrier, Collider, Pose, PosedSkin};
+use strandline_body::{BodyFrame, Carrier, Collider, Places, Pose, PosedSkin, Sides};
 
 /// The colliders at the end of a step, and their motion through it.
 #[derive(Clone)]
@@ -158,6 +158,20 @@ impl<'a> Obstacles<'a> {
             nearest = nearest.min(distance);
         }
         nearest
+    }
+
+    /// True where a skin that moves by itself is the only solid.
+    pub fn are_one_moving_skin(&self) -> bool {
+        matches!(&self.skins[..], [Some(_)])
+    }
+
+    /// The sides of places on a line at the end of the step, world space, where a skin that moves by itself is the only
+    /// solid.
+    pub fn sides_along(&self, places: Places) -> Option<Sides> {
+        let [collider] = self.colliders else { return None };
+        let skin = self.skins[0].as_deref()?;
+        let step = self.local(collider, places.first + places.step) - self.local(collider, places.first);
+        Some(skin.sides_along(&Places { first: self.local(collider, places.first), step, ..places }))
     }
 
     /// Mean velocity \[m/s\] over the step of the material of the nearest solid that ends at `point`, `None` without

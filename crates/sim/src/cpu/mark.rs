@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use strandline_base::par::prelude::*;
-use strandline_body::PosedSkin;
+use strandline_body::{MOST_PLACES, Places, PosedSkin};
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
 use super::volume::Volume;
@@ -13,6 +13,8 @@ use crate::contact::planes::{Contacts, Heights};
 
 /// Points of a cell whose planes are asked.
 const ASKED: usize = 4;
+/// Cells whose walls are looked up one after the other: each look begins where the last one ended.
+const BESIDE: usize = 64;
 /// Rounding \[m\] of a distance a metre from the origin of the head.
 const ROUNDED: f32 = 1e-6;
 
@@ -108,10 +110,35 @@ fn classify(volume: &mut Volume, obstacles: &Obstacles, known: Option<Vec<f32>>)
     };
     let asked: Vec<u32> =
         volume.marked.par_iter().with_min_len(256).filter(is_asked).map(|cell| *cell).collect();
-    let beside = distances(&volume.grid, obstacles, &asked, 0.0);
-    for (&cell, _) in asked.iter().zip(&beside).filter(|(_, distance)| **distance < 0.0) {
+    let inside: Vec<u32> = inside_skin(&volume.grid, obstacles, &asked).unwrap_or_else(|| {
+        let beside = distances(&volume.grid, obstacles, &asked, 0.0);
+        asked.iter().zip(beside).filter(|(_, distance)| *distance < 0.0).map(|(cell, _)| *cell).collect()
+    });
+    for cell in inside {
         volume.kinds[cell as usize] = Kind::Solid;
     }
+}
+
+/// Those of some cells in order whose middles lie inside a skin that moves by itself, where that is the only solid: one
+/// search for the cells of a row.
+fn inside_skin(grid: &Grid, obstacles: &Obstacles, cells: &[u32]) -> Option<Vec<u32>> {
+    if !obstacles.are_one_moving_skin() {
+        return None;
+    }
+    let row = grid.strides()[1] as u32;
+    let part = |cell: u32| (cell / row, cell % row / MOST_PLACES as u32);
+    let rows: Vec<&[u32]> = cells.chunk_by(|one, other| part(*one) == part(*other)).collect();
+    let sides = |cells: &&[u32]| {
+        let (first, last) = (cells[0], cells[cells.len() - 1]);
+        let (place, step) = (grid.center(first as usize), Vec3::X * grid.spacing());
+        let places = Places { first: place, step, count: (last - first + 1) as usize };
+        obstacles.sides_along(places).map_or(0, |sides| sides.inside)
+    };
+    let sides: Vec<u64> = rows.par_iter().with_min_len(16).map(sides).collect();
+    let inside = rows.into_iter().zip(sides).flat_map(|(cells, inside)| {
+        cells.iter().copied().filter(move |cell| inside & (1 << (cell - cells[0])) != 0)
+    });
+    Some(inside.collect())
 }
 
 /// Signed distances \[m\] at the middles of cells, or lower bounds that are more than `enough` \[m\].
@@ -155,13 +182,17 @@ fn carry_walls(volume: &mut Volume, obstacles: &Obstacles) {
             obstacles.nearest_velocity(center, near).map_or(0.0, |velocity| velocity[axis])
         })
     };
-    let around = |&cell: &u32| -> Option<(usize, [Option<f32>; 6])> {
-        let cell = cell as usize;
+    let around = |cells: &[u32]| {
         let mut near = PosedSkin::UNKNOWN;
-        let walls = std::array::from_fn(|side| wall(cell, sides[side], &mut near));
-        walls.iter().any(Option::is_some).then_some((cell, walls))
+        let walls = cells.iter().filter_map(|&cell| -> Option<(usize, [Option<f32>; 6])> {
+            let cell = cell as usize;
+            let walls = std::array::from_fn(|side| wall(cell, sides[side], &mut near));
+            walls.iter().any(Option::is_some).then_some((cell, walls))
+        });
+        walls.collect::<Vec<_>>()
     };
-    let beside: Vec<_> = volume.fluid.par_iter().with_min_len(256).filter_map(around).collect();
+    let parts = volume.fluid.par_chunks(BESIDE).with_min_len(4);
+    let beside: Vec<_> = parts.flat_map_iter(around).collect();
     let holds_all = !volume.settings.is_one_sided();
     for (cell, walls) in beside {
         for ((axis, stride, behind), wall) in sides.iter().zip(walls) {

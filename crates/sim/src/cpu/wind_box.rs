@@ -3,7 +3,7 @@
 use glam::Vec3;
 use strandline_base::par::prelude::*;
 use strandline_base::vec3x8::{Vec3x8, splat};
-use strandline_body::PosedSkin;
+use strandline_body::{Places, PosedSkin, Sides};
 use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
@@ -179,6 +179,11 @@ impl WindBox {
             return;
         }
         contents.par_chunks_mut(WIDE).enumerate().with_min_len(8).for_each(|(row, contents)| {
+            let first = self.axes.world(self.origin + (corner(row * WIDE) + 0.5) * self.edges);
+            let places = Places { first, step: self.axes.0[0] * self.edges.x, count: WIDE };
+            if let Some(sides) = obstacles.sides_along(places) {
+                return self.add_skin(obstacles, &places, sides, contents);
+            }
             let (mut near, mut least) = (PosedSkin::UNKNOWN, 0.0);
             for (column, content) in contents.iter_mut().enumerate() {
                 // A distance changes by no more than the way.
@@ -193,13 +198,31 @@ impl WindBox {
                 }
             }
             // The wind that enters may come from behind a solid.
-            let middle = self.axes.world(self.origin + (corner(row * WIDE) + 0.5) * self.edges);
             if contents[0].depth >= 0.0
-                && let Some(place) = self.upwind(obstacles, middle, &mut near)
+                && let Some(place) = self.upwind(obstacles, first, &mut near)
             {
                 self.fill(&mut contents[0], obstacles, place, &mut near);
             }
         });
+    }
+
+    /// Marks the cells of a row by the sides of their middles of a skin that moves by itself. Its velocity is that of a triangle
+    /// about as near as the nearest: the search for that takes long far inside.
+    fn add_skin(&self, obstacles: &Obstacles, places: &Places, sides: Sides, contents: &mut [Content]) {
+        let mut near = PosedSkin::UNKNOWN;
+        let mut fill = |content: &mut Content, place: Vec3| {
+            obstacles.at_least(place, &mut near);
+            self.fill(content, obstacles, place, &mut near);
+        };
+        for (column, content) in contents.iter_mut().enumerate() {
+            if sides.inside & (1 << column) != 0 {
+                fill(content, places.first + places.step * column as f32);
+            }
+        }
+        // The wind that enters may come from behind the skin.
+        if contents[0].depth >= 0.0 && sides.behind <= CALM {
+            fill(&mut contents[0], places.first - self.axes.0[0] * sides.behind);
+        }
     }
 
     /// Fills a cell with the solid at a place.
