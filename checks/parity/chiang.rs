@@ -4,7 +4,8 @@ use glam::Vec3;
 use strandline_groom::Style;
 use strandline_render::Look;
 use strandline_render::cpu::{
-    Curves, Lit, Occlusion, Scattering, ShadowBody, interpolate, opacity_depth, opacity_layers, tessellate,
+    Curves, Lit, Occlusion, Scattering, ShadowBody, SkinColor, interpolate, opacity_depth, opacity_layers,
+    root_densities, tessellate,
 };
 use strandline_render::fibre::Pigment;
 use strandline_render::{OwnColors, Shadows, Strands};
@@ -29,10 +30,12 @@ impl Both {
         let mut occlusion = Occlusion::default();
         occlusion.set_grid(self.middle(), self.look.fibre.chiang.cells);
         let own_colors = OwnColors::of(&self.guides);
+        let (body_look, own) = (self.input(positions).body_look, own_colors.as_ref().map(|own| own.mean));
+        let skin = SkinColor::new(body_look.color, body_look, &self.look, own);
         let lit = Lit {
             lights: &self.lights,
             shadows: &shadows,
-            body: body.map(|body| (body, Vec3::splat(0.3))),
+            body: body.map(|body| (body, skin)),
             look: &self.look,
             own_colors: own_colors.as_ref(),
             eye: self.camera.position,
@@ -79,8 +82,10 @@ fn agree(mut both: Both, body: bool) {
     let found = renderer.strands().unwrap().radiances;
     let placed: Vec<Vec3> =
         both.mesh.positions.iter().map(|&point| both.body.world_from_head().point(point)).collect();
-    let shape =
-        body.then_some(ShadowBody { positions: &placed, triangles: &both.mesh.triangles, cuts: None });
+    let roots = root_densities(&both.mesh.positions, &both.guides);
+    assert!(roots.iter().any(|density| *density > 0.5), "skin among roots is darker");
+    let triangles = &both.mesh.triangles;
+    let shape = body.then_some(ShadowBody { positions: &placed, triangles, roots: &roots, cuts: None });
     let strands = both.scattered_on_cpu(&positions, shape);
     let all: f32 = strands.radiances.iter().map(|radiance| radiance.element_sum()).sum();
     let pairs = strands.radiances.iter().zip(&found);

@@ -297,7 +297,7 @@ fn shade_agrees_in_the_shadow_of_the_body() {
     // Another size of the maps in the same renderer, and back.
     for map_size in [300, 128, 300] {
         both.look.shadow.map_size = map_size;
-        let body = ShadowBody { positions: &placed, triangles: &both.mesh.triangles, cuts: None };
+        let body = ShadowBody { positions: &placed, triangles: &both.mesh.triangles, roots: &[], cuts: None };
         let (_, strands, shadows) = both.shadowed_on_cpu(&positions, Some(body));
         renderer.draw(&both.input(&positions)).unwrap();
         let found = renderer.strands().unwrap().radiances;

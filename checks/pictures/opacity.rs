@@ -291,7 +291,7 @@ fn a_body_shadows_what_lies_behind_it() {
         Vec3::new(0.1, 0.0, 0.1),
         Vec3::new(-0.1, 0.0, 0.1),
     ];
-    let body = ShadowBody { positions: &corners, triangles: &[[0, 1, 2], [0, 2, 3]], cuts: None };
+    let body = ShadowBody { positions: &corners, triangles: &[[0, 1, 2], [0, 2, 3]], roots: &[], cuts: None };
     for light in [sun(Vec3::NEG_Y), Light { position: Vec3::new(0.0, 1.0, 0.0), ..Light::default() }] {
         let mut shadows = Shadows::default();
         opacity_depth(&strands, Some(body), &[light], Vec3::ZERO, &Shadow::default(), &mut shadows);

@@ -27,6 +27,8 @@ const ROOT: f32 = 0.015;
 /// tenth.
 const BESIDE: f32 = 0.03;
 const OVER: f32 = 1.2;
+/// Share of a pixel that hair covers from which skin behind it adds nothing that counts.
+const ALONE: f32 = 0.995;
 /// Depth of the crown \[m\].
 const CROWN: f32 = 0.08;
 
@@ -39,7 +41,13 @@ struct Head {
 
 impl Head {
     fn new(style: Style) -> Self {
+        Self::of(style, Scene::demo().style.strand_count)
+    }
+
+    /// With a number of guides.
+    fn of(style: Style, strand_count: usize) -> Self {
         let mut scene = Scene::demo();
+        scene.style.strand_count = strand_count;
         scene.set_style(style);
         scene.level_of_detail.by_pixel = false;
         scene.picture = PictureSettings {
@@ -252,4 +260,29 @@ fn bright_roots_are_counted_beside_the_crown() {
     let [hair, _, roots] =
         bright(&mut Head::new(Style::Bob), BodyLook::default(), &views(1)[1], &panel(0.0, 1.7, 0.1));
     assert!(roots as f32 > 0.01 * hair as f32, "the comparison can fail: {roots} of {hair}");
+}
+
+#[test]
+fn skin_among_roots_lights_hair_as_dark_as_it_is_drawn() {
+    // Combed back over a lit forehead, seen from 45 cm.
+    let mut head = Head::of(Style::Ponytail, 500);
+    let from = 0.45 * Vec3::new(0.0, 1.0, 0.5).normalize();
+    let camera = Camera { position: from, target: Vec3::new(0.0, 0.05, 0.0), ..Camera::front() };
+    let (look, lights) = (head.scene.look.clone(), Light::studio(Vec3::ZERO));
+    let mut light = |scalp: f32| {
+        head.hair.set_body_look(BodyLook { scalp, ..BodyLook::default() }).unwrap();
+        let layers = head.seen(&camera, &look, &lights);
+        let [mask, depth, id] = ["mask.hair", "depth.Z", "strand.id"].map(|name| channel(&layers, name));
+        let root = |pixel: usize| head.roots[(id[pixel] as usize - 1) / look.follow_strands as usize];
+        let is_root = |pixel: &usize| {
+            mask[*pixel] >= ALONE && root(*pixel).distance(place(&camera, *pixel, depth[*pixel])) < ROOT
+        };
+        let pixels = Linear::of(&layers).pixels;
+        let found: Vec<f32> = (0..SIZE * SIZE).filter(is_root).map(|pixel| pixels[pixel].x).collect();
+        assert!(found.len() > 100, "{} pixels of roots", found.len());
+        found.iter().sum::<f32>() / found.len() as f32
+    };
+    let [bare, dark] = [0.0, 1.0].map(&mut light);
+    println!("{bare} {dark}");
+    assert!(dark < 0.9 * bare, "{dark} on a scalp of the colour of hair, {bare} on bare skin");
 }

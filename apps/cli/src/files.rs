@@ -17,7 +17,11 @@ pub fn groom(options: &GroomOptions) -> anyhow::Result<()> {
         ..StyleSettings::new(options.style)
     };
     let waiting = Waiting::begin("growing strands");
-    let groom = settings.grow_hair(options.strands as usize)?;
+    let mut groom = settings.grow_hair(options.strands as usize)?;
+    if options.guides.is_some() {
+        // As a scene draws them.
+        groom = groom.resampled(options.style.points_per_strand() as usize)?;
+    }
     drop(waiting);
     write(&groom, &options.out)
 }

@@ -7,6 +7,9 @@ use strandline_base::{SettingError, lane_place};
 use crate::arcs::parted_arcs;
 use crate::{Groom, GroomError, LANES, Vec3Lanes, Widths, attributes, block_count};
 
+/// Share of the mean distance of a strand's points within which two lie close together.
+const CLOSE: f32 = 0.3;
+
 /// The simulated strands at rest: each resampled to the same number of points at equal arc
 /// length, stored in blocks of [`LANES`] strands.
 ///
@@ -44,6 +47,30 @@ impl Guides {
     /// `points_per_strand` outside 4..=64; a groom without strands; masses or velocities that do not fit its
     /// points.
     pub fn resample(groom: &Groom, points_per_strand: usize) -> Result<Self, GroomError> {
+        Self::placed(groom, points_per_strand, parted_arcs)
+    }
+
+    /// As [`Guides::resample`], but strands that have `points_per_strand` points already, of which none lie close
+    /// together, keep them.
+    ///
+    /// # Errors
+    /// As [`Guides::resample`].
+    pub fn own_points(groom: &Groom, points_per_strand: usize) -> Result<Self, GroomError> {
+        Self::placed(groom, points_per_strand, |strand, count| {
+            let length: f32 = strand.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+            let least = CLOSE * length / (count - 1) as f32;
+            let is_kept =
+                strand.len() == count && strand.windows(2).all(|pair| pair[0].distance(pair[1]) > least);
+            if is_kept { strand.to_vec() } else { parted_arcs(strand, count) }
+        })
+    }
+
+    /// Strands of a groom with the points that `part` makes of each.
+    fn placed(
+        groom: &Groom,
+        points_per_strand: usize,
+        part: impl Fn(&[Vec3], usize) -> Vec<Vec3> + Sync + Send,
+    ) -> Result<Self, GroomError> {
         if !(Self::MIN_POINTS..=Self::MAX_POINTS).contains(&points_per_strand) {
             return Err(SettingError::new("groom.points_per_strand", points_per_strand, "4 to 64").into());
         }
@@ -56,7 +83,7 @@ impl Guides {
         positions.par_chunks_mut(points_per_strand).enumerate().for_each(|(block, chunk)| {
             for lane in 0..LANES {
                 let strand = groom.strand((block * LANES + lane).min(strand_count - 1));
-                for (slot, point) in chunk.iter_mut().zip(parted_arcs(strand, points_per_strand)) {
+                for (slot, point) in chunk.iter_mut().zip(part(strand, points_per_strand)) {
                     slot.set(lane, point);
                 }
             }

@@ -59,6 +59,17 @@ impl Style {
         }
     }
 
+    /// Points of a strand that its curls need, with which scenes simulate and draw it.
+    pub fn points_per_strand(self) -> u32 {
+        match self {
+            Self::Curly | Self::Coils | Self::Braid => 56,
+            Self::Afro | Self::Bun => 48,
+            Self::Wavy | Self::SideSwept => 28,
+            Self::Buzz | Self::Beard | Self::Brows => 8,
+            Self::Pixie | Self::Ponytail | Self::Bob | Self::Long => 16,
+        }
+    }
+
     /// True if hair grows on the face and not on the scalp.
     pub fn is_of_face(self) -> bool {
         matches!(self, Self::Beard | Self::Brows)

@@ -25,7 +25,7 @@ const TEXEL_BYTES: u64 = 20;
 const PART_BYTES: u64 = 20;
 /// Cells of the grid of scattered light, and bytes of one: light along 26 directions four times, sums and fields.
 const GRID_CELLS: u64 = 43 * 43 * 43;
-const CELL_BYTES: u64 = 26 * 16 * 4 + 600;
+const CELL_BYTES: u64 = 26 * 16 * 4 + 640;
 
 /// Drawn parts of a groom that take memory.
 #[derive(Clone, Copy, Debug)]

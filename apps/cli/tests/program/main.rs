@@ -2,6 +2,7 @@
 
 mod clips;
 mod command_line;
+mod exported;
 mod flags;
 #[cfg(target_os = "linux")]
 mod hostile_files;

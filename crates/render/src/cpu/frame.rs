@@ -8,7 +8,7 @@ use super::shade::skin::Skin;
 use super::strands::bind::{Carried, bind, drawn_points};
 use super::{
     Curves, Draw, DrawInput, Found, Lit, Occlusion, Radiances, Resolve, Scattering, Scheuermann, Seen,
-    Shading, interpolate, keep_outside, layer_colors, opacity_depth, opacity_layers, tessellate,
+    Shading, SkinColor, interpolate, keep_outside, layer_colors, opacity_depth, opacity_layers, tessellate,
 };
 use crate::fibre::FibreModel;
 use crate::frame::edges::smooth_edges;
@@ -145,7 +145,9 @@ impl Frame<'_> {
             Some(surfaces) => surfaces.mean_color(body_look.color),
             None => body_look.color,
         };
-        let body = draw.shadow_body_of(look.shadow.coarse_body).map(|body| (body, reflected));
+        let own = own_colors.as_ref().map(|own| own.mean);
+        let skin = SkinColor::new(reflected, body_look, look, own);
+        let body = draw.shadow_body_of(look.shadow.coarse_body).map(|body| (body, skin));
         let lit = Lit { body, ..lit(self.input, shadows, own_colors.as_ref()) };
         match look.fibre.model {
             FibreModel::Scheuermann => occlusion.fill(strands, &look.shadow),

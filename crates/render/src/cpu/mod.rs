@@ -10,10 +10,12 @@ pub mod shade;
 pub mod shadow;
 pub mod strands;
 
+pub use crate::strands::scalp::root_densities;
 pub use draw::{Draw, DrawInput};
 pub use renderer::Renderer;
 pub use resolve::Resolve;
 pub use scatter::light_grid::LightGrid;
+pub use scatter::light_scene::SkinColor;
 pub use scatter::occlusion::Occlusion;
 pub(crate) use shade::Scheuermann;
 pub(crate) use shade::radiances::Found;

@@ -78,9 +78,10 @@ mirror! {
         /// Of the direction, among those of the fibre's table.
         pub number: f32,
         pub from_skin: [f32; 3],
-        pub unused: f32,
+        /// Density of roots on it, 0 to 1.
+        pub rooted: f32,
         /// Share of the lightest hair in it, by channel.
         pub light: [f32; 3],
-        pub unused_too: f32,
+        pub unused: f32,
     }
 }

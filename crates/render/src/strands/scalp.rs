@@ -11,8 +11,14 @@ const COVERED: f32 = 0.4;
 /// One in this many roots at either end of an axis is ignored as a stray, which is no part of the scalp.
 const STRAYS: usize = 50;
 
+/// Factor of the colour of skin about which roots are so dense, 0 to 1, by that among dense ones. Its twin is in
+/// gpu/common.wesl.
+pub(crate) fn tint(among_dense: Vec3, density: f32) -> Vec3 {
+    Vec3::ONE.lerp(among_dense, density)
+}
+
 /// Density of roots about every vertex over their mean density, 0 to 1; head space.
-pub(crate) fn root_densities(vertices: &[Vec3], guides: &Guides) -> Vec<f32> {
+pub fn root_densities(vertices: &[Vec3], guides: &Guides) -> Vec<f32> {
     let roots: Vec<Vec3> = (0..guides.strand_count()).map(|strand| guides.position(strand, 0)).collect();
     let [x, y, z] = [0, 1, 2].map(|axis| extent(roots.iter().map(|root| root[axis]).collect()));
     let surface = 2.0 * (x * y + y * z + z * x);

@@ -44,21 +44,30 @@ const MOST_GROUPS: usize = 64;
 const CLOSER: f32 = 0.7;
 /// Diameter of a hair over the distance of hairs on a head of a hundred thousand, and the share of it with which strands
 /// of a file are all of its hair; thinner ones are guides.
-const DENSITY: f32 = 0.095;
+pub(super) const DENSITY: f32 = 0.095;
 const ALL_HAIR: f32 = 0.5;
 
 /// Chooses settings that the scene leaves open, to fit a body's materials and a groom from a source.
 pub(super) fn fit(loading: &mut Loading) {
     loading.scene.choose_body_colors();
     if let Loading { scene, groom: Some(groom), mesh, notes, .. } = loading {
-        notes.extend(choose(scene, groom, mesh.as_ref()));
+        if !loading.is_grown {
+            notes.extend(choose(scene, groom));
+        }
+        notes.extend(fit_body(scene, mesh.as_ref()));
     }
+}
+
+/// True for a setting of the level of detail that no file gives and that has one of its defaults.
+pub(super) fn is_open(given: bool, value: u32, of: fn(&LevelOfDetail) -> u32) -> bool {
+    !given
+        && [Scene::default().level_of_detail, LevelOfDetail::default()].iter().any(|level| of(level) == value)
 }
 
 /// Chooses settings that a scene leaves open. Returns a note of the choices.
 ///
 /// A setting is open where no file gives it and it still has its default: that of the demo or of a groom file.
-fn choose(scene: &mut Scene, groom: &Groom, mesh: Option<&Mesh>) -> Option<String> {
+fn choose(scene: &mut Scene, groom: &Groom) -> Option<String> {
     let (given, default) = (scene.given, Scene::default());
     let strands = groom.strand_count();
     let mut chosen = Vec::new();
@@ -78,8 +87,7 @@ fn choose(scene: &mut Scene, groom: &Groom, mesh: Option<&Mesh>) -> Option<Strin
         chosen.push(format!("look.follow_strands = {}", look.follow_strands));
     }
     let level = &mut scene.level_of_detail;
-    let spans = [default.level_of_detail, LevelOfDetail::default()].map(|level| level.segments_per_span);
-    if !given.segments_per_span && spans.contains(&level.segments_per_span) {
+    if is_open(given.segments_per_span, level.segments_per_span, |level| level.segments_per_span) {
         let spans = strands * look.follow_strands as usize * (scene.groom.points_per_strand as usize - 1);
         level.segments_per_span = (SEGMENTS / spans.max(1)).clamp(1, 3) as u32;
         chosen.push(format!("level_of_detail.segments_per_span = {}", level.segments_per_span));
@@ -100,6 +108,13 @@ fn choose(scene: &mut Scene, groom: &Groom, mesh: Option<&Mesh>) -> Option<Strin
     if are_open {
         fit_clumps(scene, groom, spacing, &mut chosen);
     }
+    (!chosen.is_empty()).then(|| format!("chosen to fit the groom: {}", chosen.join(", ")))
+}
+
+/// Chooses settings that a scene leaves open, to fit the size of a body. Returns a note of the choices.
+fn fit_body(scene: &mut Scene, mesh: Option<&Mesh>) -> Option<String> {
+    let (given, default) = (scene.given, Scene::default());
+    let mut chosen = Vec::new();
     let size = mesh.and_then(Mesh::bounds).map_or(0.0, |bounds| bounds.min.distance(bounds.max));
     let body = &mut scene.body;
     if !given.spacing && body.spacing == default.body.spacing && size > CELLS * body.spacing {
@@ -112,7 +127,7 @@ fn choose(scene: &mut Scene, groom: &Groom, mesh: Option<&Mesh>) -> Option<Strin
         level.full_distance = NEAR * size;
         chosen.push(format!("level_of_detail.full_distance = {:.1}", level.full_distance));
     }
-    (!chosen.is_empty()).then(|| format!("chosen to fit the groom: {}", chosen.join(", ")))
+    (!chosen.is_empty()).then(|| format!("chosen to fit the body: {}", chosen.join(", ")))
 }
 
 /// Clumps of groups whose roots stand closer than those of most: brows and lashes beside hair.
@@ -177,7 +192,7 @@ fn fit_widths(scene: &mut Scene, groom: &Groom, spacing: f32, default: &Scene, c
 }
 
 /// Mean diameter \[m\] of strands.
-fn mean_width(groom: &Groom) -> f32 {
+pub(super) fn mean_width(groom: &Groom) -> f32 {
     let (mut sum, mut count) = (0.0_f64, 0);
     for strand in some(groom) {
         for point in groom.range(strand) {
@@ -226,7 +241,7 @@ fn astray(groom: &Groom, count: usize) -> f32 {
 }
 
 /// Middle distance \[m\] of roots from their nearest neighbours, as on a grid.
-fn spacing(groom: &Groom) -> f32 {
+pub(super) fn spacing(groom: &Groom) -> f32 {
     let mut nearest: Vec<f32> = groom.nearest_roots(LOOKED_AT);
     nearest.sort_by(f32::total_cmp);
     // Roots at random are half as far from their nearest as those of a grid of the same density [Clark1954].
@@ -275,7 +290,7 @@ mod tests {
         let mut scene = Scene::default();
         scene.groom.file = Some("a.hair".into());
         let mut given = scene.clone();
-        let note = choose(&mut scene, &groom, None).unwrap();
+        let note = choose(&mut scene, &groom).unwrap();
         let [brows] = &scene.look.group[..] else { panic!("{:?}", scene.look.group) };
         let clump = brows.clump.unwrap();
         assert!(
@@ -284,7 +299,7 @@ mod tests {
         );
         let own = GroupLook { name: "brows".to_owned(), clump: Some(0.5), ..GroupLook::default() };
         given.look.group = vec![own.clone()];
-        choose(&mut given, &groom, None);
+        choose(&mut given, &groom);
         assert_eq!(given.look.group, [own]);
     }
 
@@ -302,7 +317,7 @@ mod tests {
     fn chosen(groom: &Groom) -> Scene {
         let mut scene = Scene::default();
         scene.groom.file = Some("a.hair".into());
-        choose(&mut scene, groom, None);
+        choose(&mut scene, groom);
         scene
     }
 
@@ -342,10 +357,10 @@ mod tests {
         let mut own = scene.clone();
         own.given = Given { follow_strands: true, ..Given::default() };
         own.look.clump.tip_radius = 0.002;
-        let note = choose(&mut scene, &groom(0.0), None).unwrap();
+        let note = choose(&mut scene, &groom(0.0)).unwrap();
         assert_eq!(scene.look.follow_strands, 16, "40,000 of 2,500");
         assert!(note.contains("look.clump.tip_radius") && !note.contains("simulation"), "{note}");
-        let note = choose(&mut own, &groom(0.0), None).unwrap();
+        let note = choose(&mut own, &groom(0.0)).unwrap();
         assert_eq!((own.look.follow_strands, own.look.clump.tip_radius), (2, 0.002));
         assert!(!note.contains("follow_strands") && !note.contains("tip_radius"), "{note}");
     }

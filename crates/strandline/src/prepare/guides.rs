@@ -30,12 +30,17 @@ pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
     let chosen = choose(scene, groom, notes);
     let simulated = chosen.as_ref().map_or(groom.strand_count(), Vec::len);
     memory::check(scene, simulated, groom.strand_count())?;
-    let mut all = resampled(scene, groom, loading.shape.as_ref())?;
+    let resampled = |groom: &Groom| resampled(scene, groom, loading.shape.as_ref(), loading.is_grown);
+    let mut all = resampled(groom)?;
     let mut guides = match &chosen {
         None => all.clone(),
-        Some(chosen) => resampled(scene, &groom.select(chosen), loading.shape.as_ref())?,
+        Some(chosen) => resampled(&groom.select(chosen))?,
     };
-    let spreads = narrowed(looks::spreads(&scene.look, groom)?, scene, simulated, groom.strand_count());
+    let is_grown = scene.groom.file.is_none() || loading.is_grown;
+    let mut spreads = looks::spreads(&scene.look, groom)?;
+    if is_grown && simulated < groom.strand_count() {
+        spreads = Some(narrowed(spreads, simulated, groom.strand_count()));
+    }
     if chosen.is_none() {
         guides.set_spreads(spreads.clone())?;
     }
@@ -98,18 +103,18 @@ const ROOM: f32 = 1.8;
 
 /// Factors of the spread of drawn strands: between the many strands of a style less room is left than between its
 /// guides.
-fn narrowed(spreads: Option<Vec<f32>>, scene: &Scene, simulated: usize, grown: usize) -> Option<Vec<f32>> {
-    if scene.groom.file.is_some() || simulated >= grown {
-        return spreads;
-    }
+fn narrowed(spreads: Option<Vec<f32>>, simulated: usize, grown: usize) -> Vec<f32> {
     let share = ROOM * (simulated as f32 / grown as f32).sqrt();
     let own = |spreads: Vec<f32>| spreads.into_iter().map(|spread| share * spread).collect();
-    Some(spreads.map_or_else(|| vec![share; grown], own))
+    spreads.map_or_else(|| vec![share; grown], own)
 }
 
-/// Strands as they are simulated and drawn; roots without a normal take that of the body.
-fn resampled(scene: &Scene, groom: &Groom, body: Option<&Shape>) -> Result<Guides, Error> {
-    let mut guides = Guides::resample(groom, scene.groom.points_per_strand as usize)?;
+/// Strands as they are simulated and drawn, which those of a file are already where they are `grown`; roots without a
+/// normal take that of the body.
+fn resampled(scene: &Scene, groom: &Groom, body: Option<&Shape>, grown: bool) -> Result<Guides, Error> {
+    let points = scene.groom.points_per_strand as usize;
+    let mut guides =
+        if grown { Guides::own_points(groom, points)? } else { Guides::resample(groom, points)? };
     if groom.root_normals.is_none()
         && let Some(shape) = body
     {

@@ -18,7 +18,7 @@ use crate::{
 /// A scene while it is loaded. Each stage fills in fields that later stages read.
 pub(super) struct Loading<'a> {
     pub sources: &'a Sources,
-    /// The scene; `fit` chooses the settings that it leaves open.
+    /// The scene; `grown` and `fit` choose the settings that it leaves open.
     pub scene: Scene,
     /// Mends, guesses and omissions, human-readable, in the order of the stages.
     pub notes: Vec<String>,
@@ -51,6 +51,8 @@ pub(super) struct Loading<'a> {
     pub placings: Placings,
     /// True where the groom was made for another head, from `place`.
     pub is_foreign: bool,
+    /// True where the file of the groom holds hair as a style grows it, from `grown`.
+    pub is_grown: bool,
     /// Signed distance of the body, from `solids`.
     pub shape: Option<Shape>,
     /// Everything that hair hits, from `solids`.
@@ -97,6 +99,7 @@ impl<'a> Loading<'a> {
             covers: Vec::new(),
             placings: Placings::new(1.0),
             is_foreign: false,
+            is_grown: false,
             shape: None,
             colliders: Vec::new(),
             pivot: None,

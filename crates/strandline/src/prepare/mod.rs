@@ -7,6 +7,7 @@ mod evidence;
 mod fit;
 mod foreign;
 mod framing;
+mod grown;
 mod guess;
 mod guides;
 mod head;
@@ -95,14 +96,19 @@ impl Prepared {
         Self::from_sources(scene, &Sources::default())
     }
 
-    /// The hair of a scene at rest, all strands as loaded or grown and after its strokes: head space, their own points.
+    /// The hair of a scene at rest, all strands as loaded or grown and after its strokes: head space, those of a file with
+    /// their own points, those of a style with as many as are drawn.
     ///
     /// # Errors
     /// As [`Prepared::new`].
     pub fn groom(scene: &Scene) -> Result<Groom, Error> {
         let sources = Sources::default();
         let loading = placed(scene, &sources, &mut None)?;
-        Ok(loading.groom.unwrap_or_else(|| Groom::empty(0.0)))
+        let groom = loading.groom.unwrap_or_else(|| Groom::empty(0.0));
+        if scene.groom.file.is_some() || groom.strand_count() == 0 {
+            return Ok(groom);
+        }
+        Ok(groom.resampled(scene.groom.points_per_strand as usize)?)
     }
 
     /// Loads and grows everything that a scene names, from memory and files.
@@ -153,6 +159,7 @@ fn unbrushed(loading: &mut Loading) -> Result<(), Error> {
     read::read(loading)?;
     ends::turn(loading);
     place::place(loading)?;
+    grown::grown(loading);
     fit::fit(loading);
     solids::solids(loading)?;
     roots::roots(loading)

@@ -2,18 +2,22 @@
 
 use std::sync::Arc;
 
+use glam::Vec3;
 use strandline_base::cache;
 
 use super::loading::Loading;
 use super::placing::place_mesh;
 use crate::{
     Error,
-    body::{Carrier, Collider, DistanceGrid, Mannequin, Mesh, Neck, Shape, SkinSolid},
+    body::{Carrier, Collider, DistanceGrid, Mannequin, Mesh, Neck, Shape, SignedDistance, SkinSolid},
     scene::{Model, solid_motion},
 };
 
 /// Air around a loaded body that its signed distance covers \[m\].
 const DISTANCE_PADDING: f32 = 0.02;
+/// Roots that are looked at, and their distance \[m\] from the skin that they grow on.
+const LOOKED_AT: usize = 400;
+const ON_SKIN: f32 = 1e-3;
 
 /// Makes the signed distance of the body and the solids beside it; brings in the mannequin where the scene has it.
 pub(super) fn solids(loading: &mut Loading) -> Result<(), Error> {
@@ -24,6 +28,11 @@ pub(super) fn solids(loading: &mut Loading) -> Result<(), Error> {
         (true, _) => {}
         (false, Model::Mannequin) => mannequin(loading)?,
         (false, Model::Auto) if is_grown => mannequin(loading)?,
+        (false, Model::Auto) if grows_on_mannequin(loading) => {
+            let note = "the roots lie on the skin of the built-in bust: it is the body (body.model = \"none\" leaves it out)";
+            loading.notes.push(note.to_owned());
+            mannequin(loading)?;
+        }
         (false, Model::Auto | Model::None) => {}
     }
     let scene = &loading.scene;
@@ -42,6 +51,16 @@ pub(super) fn solids(loading: &mut Loading) -> Result<(), Error> {
     let beside = solid_motion::colliders(&scene.colliders, neck.map_or(0, |_| Neck::PIECES))?;
     loading.colliders.extend(beside);
     Ok(())
+}
+
+/// True if the groom's file holds hair as a style grows it, with its roots on the skin of the mannequin.
+fn grows_on_mannequin(loading: &Loading) -> bool {
+    let Loading { scene, groom: Some(groom), is_grown: true, .. } = loading else { return false };
+    let skin = Mannequin::of(scene.body.build, scene.body.eyes);
+    let every = (groom.strand_count() / LOOKED_AT).max(1);
+    let roots: Vec<Vec3> = groom.roots().step_by(every).collect();
+    let off = roots.iter().filter(|root| !(skin.distance(**root).abs() < ON_SKIN)).count();
+    off * 100 <= roots.len()
 }
 
 /// Adds the mannequin. Hair hits its signed distance sampled at `spacing`, or the exact one, whose lookups take four

@@ -33,15 +33,8 @@ impl Scene {
         self.groom.parts.clear();
         self.begin_at_rest();
         self.style = StyleSettings { seed, strand_count, ..StyleSettings::new(style) };
-        let (points, segments) = match style {
-            Style::Curly | Style::Coils | Style::Braid => (56, 1),
-            Style::Afro | Style::Bun => (48, 1),
-            Style::Wavy | Style::SideSwept => (28, 2),
-            Style::Buzz | Style::Beard | Style::Brows => (8, 2),
-            Style::Pixie | Style::Ponytail | Style::Bob | Style::Long => (16, 3),
-        };
-        self.groom.points_per_strand = points;
-        self.level_of_detail.segments_per_span = segments;
+        self.groom.points_per_strand = style.points_per_strand();
+        self.level_of_detail.segments_per_span = segments_per_span(self.groom.points_per_strand);
         // Hairs of a face are fewer than those of a head; other numbers are the user's.
         let hairs = |style| match style {
             Style::Beard => 25_000,
@@ -79,6 +72,16 @@ impl Scene {
         scene.level_of_detail = LevelOfDetail::full();
         (scene.picture.width, scene.picture.height) = (800, 600);
         scene
+    }
+}
+
+/// Segments on each span of a style's strand of some points: about one on every centimetre.
+pub(crate) fn segments_per_span(points: u32) -> u32 {
+    match points {
+        ..12 => 2,
+        12..20 => 3,
+        20..40 => 2,
+        _ => 1,
     }
 }
 

@@ -119,7 +119,7 @@ pub(super) fn grown(guides: usize, bound: Option<u32>) -> usize {
 }
 
 /// Follow strands that fill the hair of a style of some guides.
-pub(super) fn filling(guides: usize, bound: Option<u32>) -> u32 {
+pub(crate) fn filling(guides: usize, bound: Option<u32>) -> u32 {
     let wanted = DRAWN.saturating_mul(guides);
     wanted.div_ceil(grown(guides, bound).max(1)).clamp(1, DRAWN) as u32
 }

@@ -24,10 +24,12 @@ use strandline_base::{Group, SettingError, Value, printable, read_plain, setting
 
 pub(crate) use air::Air;
 pub use body::{BodyPart, BodySection, CapsuleSection, CarrierName, ColliderSection, Model, SphereSection};
+pub(crate) use builtin::segments_per_span;
 pub use colors::hex_color;
 pub use devices::Devices;
 pub use film::{CameraKeyframe, CameraSection, FilmSection, KeptView, View};
 pub(crate) use given::Given;
+pub(crate) use groom::filling;
 pub use groom::{GroomPart, GroomSection, TieSection};
 pub use head::HeadMotion;
 pub use motion::{KeyframeSection, MotionName, MotionSection, WindKeyframe, WindSection, WindSource};

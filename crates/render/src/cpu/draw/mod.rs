@@ -82,8 +82,8 @@ impl Draw {
 
     /// Carries the few triangles that stand for the body in shadows to their place.
     pub(crate) fn place_coarse_body(&mut self, frame: &BodyFrame) {
-        if let Some(Body { coarse, mesh, surfaces, .. }) = &mut self.body {
-            coarse.place(mesh, surfaces.as_ref(), frame);
+        if let Some(Body { coarse, mesh, surfaces, roots, .. }) = &mut self.body {
+            coarse.place(mesh, surfaces.as_ref(), roots, frame);
         }
     }
 
@@ -96,7 +96,7 @@ impl Draw {
     pub fn shadow_body(&self) -> Option<ShadowBody<'_>> {
         let body = self.body.as_ref()?;
         let cuts = body.surfaces.as_ref().filter(|surfaces| surfaces.cuts).map(Cuts::of);
-        Some(ShadowBody { positions: &body.positions, triangles: body.triangles(), cuts })
+        Some(ShadowBody { positions: &body.positions, triangles: body.triangles(), roots: &body.roots, cuts })
     }
 
     /// The body in its place, to cast shadows: of few triangles where it is `coarse` and was placed so.

@@ -145,7 +145,6 @@ impl Carried {
 
     /// Scatters the carried light by hair and skin.
     pub(crate) fn scatter(&mut self, cells: &[Cell], scene: &Scene) {
-        let color = scene.body.map_or(Vec3::ZERO, |(_, color)| color).extend(0.0);
         let Self { rays, direct, skins, .. } = self;
         let both =
             rays.par_iter_mut().zip(direct).zip(cells.par_chunks(BLOCK)).zip(skins.par_chunks_mut(BLOCK));
@@ -158,7 +157,7 @@ impl Carried {
                     rays.iter_mut().zip(shown).for_each(|(rays, shown)| rays[at] = shown);
                 }
                 if cell.skin != Vec3::ZERO {
-                    *skin = (cell.skin_light + on_skin(cell.skin, &carried, scene)) * color;
+                    *skin = (cell.skin_light + on_skin(cell.skin, &carried, scene)) * cell.skin_color;
                 }
             }
         });

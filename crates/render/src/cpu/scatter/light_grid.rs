@@ -103,7 +103,6 @@ impl LightGrid {
         let scale = 1.0 / (UNITS * grid.cell * grid.cell);
         let skin_sums = width - SKIN_SUMS;
         let around = scene.around[0];
-        let color = scene.body.map_or(Vec3::ZERO, |(_, color)| color).extend(0.0);
         let number = |index: usize, at: usize| {
             let whole: i64 = parts.iter().map(|part| part[index * width + at]).sum();
             whole as f32 * scale
@@ -131,6 +130,9 @@ impl LightGrid {
             }
             if area > 0.0 {
                 cell.skin_light = vector(index, skin_sums + 3).extend(0.0) / area;
+                let rooted = (number(index, skin_sums + 6) / area).clamp(0.0, 1.0);
+                let color = scene.body.map_or(Vec3::ZERO, |(_, color)| color.among(rooted));
+                cell.skin_color = color.extend(0.0);
             }
             Some(cell)
         });
@@ -142,7 +144,7 @@ impl LightGrid {
         };
         // As if the surroundings reached every hair: even light is found at once.
         let even = |cell: &Cell| around * scene.lattice.albedo(&cell.mix);
-        let skin = |cell: &Cell| (cell.skin_light + around) * color;
+        let skin = |cell: &Cell| (cell.skin_light + around) * cell.skin_color;
         self.carried.begin(&grid, &self.cells, even, straight, skin);
     }
 

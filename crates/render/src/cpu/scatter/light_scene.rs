@@ -5,13 +5,13 @@ use std::sync::Arc;
 use glam::{Vec3, Vec4};
 
 use super::occlusion::Occlusion;
-use crate::Light;
 use crate::cpu::ShadowBody;
 use crate::level_of_detail::EveryFew;
 use crate::light_field::Field;
 use crate::scatter::lattice::{Lattice, Mix};
 use crate::shadow::Shadows;
-use crate::strands::Strands;
+use crate::strands::{Strands, scalp::tint};
+use crate::{BodyLook, Light, Look};
 
 /// Scatterers of light.
 #[derive(Clone, Copy)]
@@ -24,7 +24,7 @@ pub struct Scene<'a> {
     /// these, where the hair is mixed, how much of the lightest it is, by channel.
     pub reached: &'a [Vec<f32>],
     /// The body and the reflectance of its skin.
-    pub body: Option<(ShadowBody<'a>, Vec3)>,
+    pub body: Option<(ShadowBody<'a>, SkinColor)>,
     /// Shadows of the same lights.
     pub shadows: &'a Shadows,
     /// Surroundings hidden by hair; its grid is reused.
@@ -39,6 +39,27 @@ pub struct Scene<'a> {
     pub eye: Vec3,
     /// Number of scatterings.
     pub rounds: u32,
+}
+
+/// Reflectance of skin, linear RGB.
+#[derive(Clone, Copy, Debug)]
+pub struct SkinColor {
+    /// Where no roots are.
+    pub bare: Vec3,
+    /// Factor of it among dense roots.
+    pub scalp: Vec3,
+}
+
+impl SkinColor {
+    /// That of a body among the roots of hair, which has its `own` colour, if there is one.
+    pub fn new(bare: Vec3, body: &BodyLook, look: &Look, own: Option<Vec3>) -> Self {
+        Self { bare, scalp: look.scalp(body.scalp, own) }
+    }
+
+    /// That where roots are so dense, 0 to 1.
+    pub(crate) fn among(&self, density: f32) -> Vec3 {
+        self.bare * tint(self.scalp, density)
+    }
 }
 
 /// Content of a cell.
@@ -56,6 +77,8 @@ pub(crate) struct Cell {
     pub(crate) skin: Vec3,
     /// Light that skin meets straight from lights, as radiance of a white surface.
     pub(crate) skin_light: Vec4,
+    /// Reflectance of the skin.
+    pub(crate) skin_color: Vec4,
     /// The lattice's number of the tangent.
     pub(crate) nearest: usize,
     /// Shares of the darkest and the lightest hair.

@@ -23,8 +23,8 @@ pub(crate) const HAIR_SUMS: usize = 4;
 /// Depth \[cell\] below its surface at which skin is summed: spread over the cells around, it would hide the hair that
 /// lies on it.
 const SKIN_INSIDE: f32 = 0.5;
-/// Sums of a cell's skin, behind those of its hair: area times normal, light on it.
-pub(crate) const SKIN_SUMS: usize = 6;
+/// Sums of a cell's skin, behind those of its hair: area times normal, light on it, area times density of roots.
+pub(crate) const SKIN_SUMS: usize = 7;
 
 /// Sums both in parts, shape `[part][cell][sum]`.
 pub(crate) fn sum(grid: &GridBox, scene: &Scene, parts: &mut Vec<Vec<i64>>) {
@@ -109,7 +109,7 @@ fn add_small(sums: &mut [i64], quads: &[f32x4], share: f32) {
     }
 }
 
-/// Adds skin: its area times its normal, and light that meets it.
+/// Adds skin: its area times its normal, light that meets it, and its area times the density of roots.
 fn sum_skin(
     grid: &GridBox,
     scene: &Scene,
@@ -128,6 +128,8 @@ fn sum_skin(
         if !(longest < 1e3) || normal == Vec3::ZERO || !grid.holds(a.min(b).min(c), a.max(b).max(c)) {
             continue;
         }
+        let rooted =
+            Vec3::from(corners.map(|corner| body.roots.get(corner as usize).copied().unwrap_or(0.0)));
         let pieces = (2.0 * longest).ceil().max(1.0) as usize;
         let share = 1.0 / (pieces * pieces) as f32;
         for (first, second) in (0..pieces).flat_map(|row| (0..2 * row + 1).map(move |at| (row, at))) {
@@ -148,7 +150,9 @@ fn sum_skin(
             }
             let area = across * share;
             let light = light * area.length();
-            let values = [area.x, area.y, area.z, light.x, light.y, light.z];
+            let shares = Vec3::new(1.0 - along, along - aside, aside);
+            let rooted = rooted.dot(shares) * area.length();
+            let values = [area.x, area.y, area.z, light.x, light.y, light.z, rooted];
             let quads = [0, 4].map(|first| quad(&values[first..]));
             let small = values.iter().all(|value| value.abs() * UNITS < MOST_SMALL);
             grid.spread(place - normal * (SKIN_INSIDE * grid.cell), |index, share| {

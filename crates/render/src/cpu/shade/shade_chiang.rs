@@ -6,7 +6,7 @@ use strandline_base::par::prelude::*;
 use super::radiances::{Shading, fill_all};
 use crate::cpu::ShadowBody;
 use crate::cpu::scatter::light_grid::LightGrid;
-use crate::cpu::scatter::light_scene::Scene;
+use crate::cpu::scatter::light_scene::{Scene, SkinColor};
 use crate::cpu::scatter::mixture::{Chance, lightness, pigments};
 use crate::cpu::scatter::occlusion::{Occlusion, toward};
 use crate::fibre::chiang::{Pigments, Seen, Table};
@@ -45,7 +45,7 @@ pub struct Lit<'a> {
     /// Their shadows.
     pub shadows: &'a Shadows,
     /// The body and the colour of its skin.
-    pub body: Option<(ShadowBody<'a>, Vec3)>,
+    pub body: Option<(ShadowBody<'a>, SkinColor)>,
     /// The hair's look.
     pub look: &'a Look,
     /// The groom's colours, where it has some.

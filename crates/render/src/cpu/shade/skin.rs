@@ -6,6 +6,7 @@ use glam::Vec3;
 
 use crate::cpu::{LightGrid, Occlusion};
 use crate::shadow::Shadows;
+use crate::strands::scalp::tint;
 use crate::surfaces::Painted;
 use crate::{BodyLook, Environment, Light};
 
@@ -34,7 +35,7 @@ impl Skin<'_> {
     /// Radiance toward the camera, linear RGB, of a point \[m\] with a unit normal, world space, where roots are so
     /// dense, 0 to 1, and with the paint that it has.
     pub(crate) fn radiance(&self, point: Vec3, normal: Vec3, rooted: f32, painted: Option<&Painted>) -> Vec3 {
-        let finish = &Finish::new(self.look, Vec3::ONE.lerp(self.scalp, rooted), painted);
+        let finish = &Finish::new(self.look, tint(self.scalp, rooted), painted);
         let to_eye = (self.eye - point).normalize_or(normal);
         let around = match self.grid {
             Some(grid) => grid.on_skin(point, normal),

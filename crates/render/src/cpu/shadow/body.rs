@@ -9,13 +9,15 @@ use crate::surfaces::Surfaces;
 /// Half a texel and more than rounding adds.
 const HALF: f32 = 0.501;
 
-/// A body that casts shadows, already in its place.
+/// A body that casts shadows and reflects light into hair, already in its place.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowBody<'a> {
     /// Vertex positions \[m\], world space.
     pub positions: &'a [Vec3],
     /// Corner indices.
     pub triangles: &'a [[u32; 3]],
+    /// Density of roots about every vertex, 0 to 1; empty without roots.
+    pub roots: &'a [f32],
     /// Parts of triangles that are cut away, where there are some.
     pub cuts: Option<Cuts<'a>>,
 }

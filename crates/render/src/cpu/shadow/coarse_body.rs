@@ -16,11 +16,13 @@ pub(crate) struct CoarseBody {
     is_made: bool,
     /// Vertex positions \[m\], world space.
     positions: Vec<Vec3>,
+    /// Density of roots about every vertex, 0 to 1; empty without roots.
+    roots: Vec<f32>,
 }
 
 impl CoarseBody {
-    /// Carries it to the place of a body. What materials cut away is left out where that is the middle of a triangle.
-    pub fn place(&mut self, mesh: &Mesh, surfaces: Option<&Surfaces>, frame: &BodyFrame) {
+    /// Carries it to the place of a body with its densities of roots. What materials cut away is left out where that is the middle of a triangle.
+    pub fn place(&mut self, mesh: &Mesh, surfaces: Option<&Surfaces>, roots: &[f32], frame: &BodyFrame) {
         if !self.is_made {
             let cuts = surfaces.filter(|surfaces| surfaces.cuts);
             let middle = Vec3::splat(1.0 / 3.0);
@@ -31,13 +33,16 @@ impl CoarseBody {
         }
         if let Some(coarse) = &self.mesh {
             coarse.place(mesh, frame, &mut self.positions);
+            self.roots.clear();
+            self.roots.extend(coarse.vertices.iter().filter_map(|vertex| roots.get(*vertex as usize)));
         }
     }
 
     /// The body in its place; `None` where none of so few triangles was found, and before it was placed.
     pub fn shadow_body(&self) -> Option<ShadowBody<'_>> {
         let coarse = self.mesh.as_ref()?;
-        Some(ShadowBody { positions: &self.positions, triangles: &coarse.triangles, cuts: None })
+        let Self { positions, roots, .. } = self;
+        Some(ShadowBody { positions, triangles: &coarse.triangles, roots, cuts: None })
     }
 }
 
@@ -46,7 +51,9 @@ mod tests {
     use strandline_groom::{Groom, Guides};
 
     use super::*;
-    use crate::cpu::{Lit, Occlusion, Renderer, Scattering, opacity_depth, opacity_layers};
+    use crate::cpu::{
+        Lit, Occlusion, Renderer, Scattering, SkinColor, opacity_depth, opacity_layers, root_densities,
+    };
     use crate::shadow::Shadows;
     use crate::{BodyLook, Camera, FrameInput, LevelOfDetail, Light, Look, PictureSettings};
 
@@ -108,7 +115,8 @@ mod tests {
         let full =
             draw(&Look { shadow: crate::Shadow { coarse_body: false, ..look.shadow }, ..look.clone() }).2;
         let mut few = CoarseBody::default();
-        few.place(&mesh, None, &BodyFrame::REST);
+        let roots = root_densities(&mesh.positions, &guides);
+        few.place(&mesh, None, &roots, &BodyFrame::REST);
         let few = few.shadow_body().unwrap();
         assert!(few.triangles.len() <= MOST && mesh.triangles.len() > 7 * MOST);
         let of_body = |body: ShadowBody| {
@@ -117,7 +125,7 @@ mod tests {
             opacity_layers(&strands, &mut shadows);
             let (mut scattering, mut occlusion) = (Scattering::default(), Occlusion::default());
             occlusion.set_grid(middle, look.fibre.grid_cells());
-            let body = Some((body, body_look.color));
+            let body = Some((body, SkinColor::new(body_look.color, &body_look, &look, None)));
             let lit = Lit {
                 lights: &lights,
                 shadows: &shadows,
@@ -129,7 +137,8 @@ mod tests {
             scattering.prepare(&strands, &lit, &mut occlusion);
             found(&shadows, &scattering)
         };
-        let all = ShadowBody { positions: &mesh.positions, triangles: &mesh.triangles, cuts: None };
+        let Mesh { positions, triangles, .. } = &mesh;
+        let all = ShadowBody { positions, triangles, roots: &roots, cuts: None };
         assert!(coarse == of_body(few), "no other triangles cast shadows or reflect light");
         assert!(full == of_body(all));
         assert!(coarse.0 != full.0 && coarse.1 != full.1);

@@ -17,7 +17,7 @@ use crate::scatter::source::Source;
 use crate::scatter::ways::{DIRECTIONS, TANGENTS};
 
 /// Sums of a cell: see light_sums.wesl.
-const SUMS: usize = 13 + MAX_SHADOWS;
+const SUMS: usize = 14 + MAX_SHADOWS;
 /// Vectors of a cell behind the fibre's tables, and where they begin.
 const GLOW: usize = 13;
 const FIRST_GLOW: usize = 28_672;
