@@ -49,7 +49,11 @@ impl Both {
             // Turned, so that head and world space differ.
             body: Pose { rotation: Quat::from_rotation_y(0.4), translation: Vec3::new(0.02, -0.01, 0.03) }
                 .into(),
-            look: Look { grey: 0.2, shadow: Shadow { map_size: MAP, ..Look::thesis().shadow }, ..Look::thesis() },
+            look: Look {
+                grey: 0.2,
+                shadow: Shadow { map_size: MAP, ..Look::thesis().shadow },
+                ..Look::thesis()
+            },
             lights,
             camera,
             // All that a picture of common size draws: these are small.
@@ -61,7 +65,8 @@ impl Both {
     /// The same of a groom with colours and widths of its own, which change along its strands.
     pub(crate) fn colored() -> Self {
         let both = Self::new(Style::Bob, 12);
-        let mut groom = StyleSettings { strand_count: STRANDS, ..StyleSettings::new(Style::Bob) }.grow().unwrap();
+        let mut groom =
+            StyleSettings { strand_count: STRANDS, ..StyleSettings::new(Style::Bob) }.grow().unwrap();
         let count = groom.points.len();
         let number = |point: usize, step: f32| (step * point as f32).fract();
         groom.widths =

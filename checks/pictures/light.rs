@@ -350,7 +350,7 @@ law! {
 }
 
 law! {
-    fn a_head_lit_from_behind_is_lit_as_path_tracing_lights_it(on) {
+    long fn a_head_lit_from_behind_is_lit_as_path_tracing_lights_it(on) {
         // Light from behind comes through the outermost hairs, which texels even out. With four places red was 0.80 of
         // the reference with 1,024 texels a side, 0.83 with 2,048, 0.88 with 4,096. A GPU's maps together hold 128 MiB:
         // those of one place may have 2,896 a side, and red was 0.854 there.

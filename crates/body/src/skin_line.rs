@@ -52,7 +52,7 @@ impl PosedSkin {
         let largest = min.abs().max(max.abs()).max(places.first.abs().into()).max_element();
         let line = Line::new(places.first, places.step / length, ROUNDING * largest);
         let count = places.count.min(MOST_PLACES);
-        // How much more the skin winds around the place than around the one behind it.
+        // Windings of the skin around each place beyond those around the place behind it.
         let mut turns = [0_i32; MOST_PLACES + 1];
         self.cross(&line, |height, turn| {
             if height <= 0.0 {

@@ -44,7 +44,7 @@ pub struct Scene<'a> {
 /// Reflectance of skin, linear RGB.
 #[derive(Clone, Copy, Debug)]
 pub struct SkinColor {
-    /// Where no roots are.
+    /// Colour of skin without roots.
     pub bare: Vec3,
     /// Factor of it among dense roots.
     pub scalp: Vec3,

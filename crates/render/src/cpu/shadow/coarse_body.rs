@@ -104,12 +104,9 @@ mod tests {
                 level_of_detail: &LevelOfDetail::full(),
             };
             renderer.draw(&input).unwrap();
-            let middle = input.middle(renderer.scratch.bounds);
-            (
-                renderer.scratch.strands.clone(),
-                middle,
-                found(&renderer.scratch.shadows, &renderer.scratch.scattering),
-            )
+            let scratch = &renderer.scratch;
+            let reflected = found(&scratch.shadows, &scratch.scattering);
+            (scratch.strands.clone(), input.middle(scratch.bounds), reflected)
         };
         let (strands, middle, coarse) = draw(&look);
         let full =
