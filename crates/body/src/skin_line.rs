@@ -8,7 +8,7 @@ use crate::posed_skin::DEPTH;
 /// Most places along a line.
 pub const MOST_PLACES: usize = 64;
 /// Share of the largest coordinate by which rounding may move a box.
-const ROUNDING: f32 = 1e-6;
+const ROUNDING: f32 = 4e-6;
 
 /// Places at equal steps along a line.
 #[derive(Clone, Copy, Debug)]
@@ -41,12 +41,13 @@ struct Line {
 
 impl PosedSkin {
     /// The sides of places \[m\] on a line at the end of the step, head space, by the triangles that the whole line crosses: one
-    /// search for all of them. They are exact where the skin passes through itself, too.
-    pub fn sides_along(&self, places: &Places) -> Sides {
+    /// search for all of them. They are exact where the skin passes through itself, too. `None` where the line enters the skin
+    /// more or less often than it leaves it: through a hole, as where shells overlap and buried triangles were left out.
+    pub fn sides_along(&self, places: &Places) -> Option<Sides> {
         let length = places.step.length();
         let mut sides = Sides { inside: 0, behind: f32::INFINITY };
         if !(length > 0.0 && length.is_finite() && places.first.is_finite()) {
-            return sides;
+            return Some(sides);
         }
         let [min, max] = self.boxes[0];
         let largest = min.abs().max(max.abs()).max(places.first.abs().into()).max_element();
@@ -54,7 +55,9 @@ impl PosedSkin {
         let count = places.count.min(MOST_PLACES);
         // Windings of the skin around each place beyond those around the place behind it.
         let mut turns = [0_i32; MOST_PLACES + 1];
+        let mut whole = 0;
         self.cross(&line, |height, turn| {
+            whole += turn;
             if height <= 0.0 {
                 sides.behind = sides.behind.min(-height as f32);
                 return;
@@ -62,12 +65,15 @@ impl PosedSkin {
             let passed = (height / f64::from(length)).ceil().min(count as f64) as usize;
             turns[passed] += turn;
         });
+        if whole != 0 {
+            return None;
+        }
         let mut around = 0;
         for place in (0..count).rev() {
             around += turns[place + 1];
             sides.inside |= u64::from(around as f32 * self.solid.facing > 0.0) << place;
         }
-        sides
+        Some(sides)
     }
 
     /// Calls for each triangle that a line crosses, with the way \[m\] along the line, and 1 where the line leaves through its

@@ -50,7 +50,7 @@ fn a_style_that_was_written_and_read_is_drawn_as_the_style() {
         if style == "bob" {
             let (other, notes) = drawn(at, &["--groom", file, "--set", "groom.guides=200"]);
             assert!(notes.contains("chosen to fit") && !notes.contains("taken from the file"), "{notes}");
-            assert!(compare(&other, &grown, 0.03, 1.0).is_err(), "the comparison can fail");
+            assert!(compare(&other, &grown, 0.01, 0.1).is_err(), "the comparison can fail");
         }
     }
 }

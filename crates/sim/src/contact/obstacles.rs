@@ -166,12 +166,12 @@ impl<'a> Obstacles<'a> {
     }
 
     /// The sides of places on a line at the end of the step, world space, where a skin that moves by itself is the only
-    /// solid.
+    /// solid and has no hole there.
     pub fn sides_along(&self, places: Places) -> Option<Sides> {
         let [collider] = self.colliders else { return None };
         let skin = self.skins[0].as_deref()?;
         let step = self.local(collider, places.first + places.step) - self.local(collider, places.first);
-        Some(skin.sides_along(&Places { first: self.local(collider, places.first), step, ..places }))
+        skin.sides_along(&Places { first: self.local(collider, places.first), step, ..places })
     }
 
     /// Mean velocity \[m/s\] over the step of the material of the nearest solid that ends at `point`, `None` without

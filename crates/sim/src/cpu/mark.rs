@@ -120,7 +120,7 @@ fn classify(volume: &mut Volume, obstacles: &Obstacles, known: Option<Vec<f32>>)
 }
 
 /// Those of some cells in order whose middles lie inside a skin that moves by itself, where that is the only solid: one
-/// search for the cells of a row.
+/// search for the cells of a row, one for each cell where the skin has a hole.
 fn inside_skin(grid: &Grid, obstacles: &Obstacles, cells: &[u32]) -> Option<Vec<u32>> {
     if !obstacles.are_one_moving_skin() {
         return None;
@@ -128,17 +128,18 @@ fn inside_skin(grid: &Grid, obstacles: &Obstacles, cells: &[u32]) -> Option<Vec<
     let row = grid.strides()[1] as u32;
     let part = |cell: u32| (cell / row, cell % row / MOST_PLACES as u32);
     let rows: Vec<&[u32]> = cells.chunk_by(|one, other| part(*one) == part(*other)).collect();
-    let sides = |cells: &&[u32]| {
+    let inside = |cells: &&[u32]| -> Vec<u32> {
         let (first, last) = (cells[0], cells[cells.len() - 1]);
         let (place, step) = (grid.center(first as usize), Vec3::X * grid.spacing());
         let places = Places { first: place, step, count: (last - first + 1) as usize };
-        obstacles.sides_along(places).map_or(0, |sides| sides.inside)
+        let is_inside: Vec<bool> = match obstacles.sides_along(places) {
+            Some(sides) => cells.iter().map(|cell| sides.inside & (1 << (cell - first)) != 0).collect(),
+            None => distances(grid, obstacles, cells, 0.0).iter().map(|distance| *distance < 0.0).collect(),
+        };
+        cells.iter().zip(is_inside).filter(|(_, is_inside)| *is_inside).map(|(cell, _)| *cell).collect()
     };
-    let sides: Vec<u64> = rows.par_iter().with_min_len(16).map(sides).collect();
-    let inside = rows.into_iter().zip(sides).flat_map(|(cells, inside)| {
-        cells.iter().copied().filter(move |cell| inside & (1 << (cell - cells[0])) != 0)
-    });
-    Some(inside.collect())
+    let inside: Vec<Vec<u32>> = rows.par_iter().with_min_len(16).map(inside).collect();
+    Some(inside.concat())
 }
 
 /// Signed distances \[m\] at the middles of cells, or lower bounds that are more than `enough` \[m\].

@@ -21,14 +21,21 @@ pub(super) fn grown(loading: &mut Loading) {
     }
 }
 
-/// True for strands of a file that marks guides among them, as wide and as dense as hair on a head: those of a style.
+/// True for a groom in which some strands are marked as guides, and all have one number of points: as a style is written.
+pub(super) fn has_form_of_style(groom: &Groom) -> bool {
+    let (marked, count) = (groom.marked_guides().len(), groom.strand_count());
+    marked > 0
+        && marked < count
+        && (1..count).all(|strand| groom.strand(strand).len() == groom.strand(0).len())
+}
+
+/// True for strands of that form, as wide and as dense as so many hairs on a head: those of a style.
 fn is_grown(scene: &Scene, groom: &Groom) -> bool {
-    let marked = groom.marked_guides().len();
     let are_theirs = scene.groom.guides.is_none() && scene.groom.guide_every == 1;
-    if !are_theirs || marked == 0 || marked == groom.strand_count() || !Attribute::Widths.is_in(groom) {
+    if !are_theirs || !has_form_of_style(groom) || !Attribute::Widths.is_in(groom) {
         return false;
     }
-    let hair_count = Scene::default().look.hair_count as f32;
+    let hair_count = scene.look.hair_count.max(1) as f32;
     let of_hair = DENSITY * spacing(groom) * (groom.strand_count() as f32 / hair_count).sqrt();
     (of_hair / AS_WIDE..of_hair * AS_WIDE).contains(&mean_width(groom))
 }

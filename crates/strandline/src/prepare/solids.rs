@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use strandline_base::cache;
 
+use super::grown::has_form_of_style;
 use super::loading::Loading;
 use super::placing::place_mesh;
 use crate::{
@@ -53,9 +54,12 @@ pub(super) fn solids(loading: &mut Loading) -> Result<(), Error> {
     Ok(())
 }
 
-/// True if the groom's file holds hair as a style grows it, with its roots on the skin of the mannequin.
+/// True if the groom's file has the form of a style, with its roots on the skin of the mannequin.
 fn grows_on_mannequin(loading: &Loading) -> bool {
-    let Loading { scene, groom: Some(groom), is_grown: true, .. } = loading else { return false };
+    let Loading { scene, groom: Some(groom), .. } = loading else { return false };
+    if !has_form_of_style(groom) {
+        return false;
+    }
     let skin = Mannequin::of(scene.body.build, scene.body.eyes);
     let every = (groom.strand_count() / LOOKED_AT).max(1);
     let roots: Vec<Vec3> = groom.roots().step_by(every).collect();

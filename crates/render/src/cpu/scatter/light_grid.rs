@@ -130,6 +130,7 @@ impl LightGrid {
             }
             if area > 0.0 {
                 cell.skin_light = vector(index, skin_sums + 3).extend(0.0) / area;
+                // Sides of thin skin take each other's area away, so that few roots count as many there.
                 let rooted = (number(index, skin_sums + 6) / area).clamp(0.0, 1.0);
                 let color = scene.body.map_or(Vec3::ZERO, |(_, color)| color.among(rooted));
                 cell.skin_color = color.extend(0.0);
