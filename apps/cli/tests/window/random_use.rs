@@ -56,11 +56,14 @@ fn settled(person: &mut Person, scene: &std::path::Path) -> u64 {
     resize(person, SIZES[0]);
     person.drop_file(scene);
     std::thread::sleep(Duration::from_secs(2));
-    if !rests(person, Duration::from_secs(6)) {
+    // On a busy machine the first key may set a window going that was about to rest: the next one pauses it again.
+    for seconds in [8, 30, 30, 30] {
+        if rests(person, Duration::from_secs(seconds)) {
+            return person.memory();
+        }
         person.key(SPACE);
-        assert!(rests(person, Duration::from_secs(60)), "the window does not come to rest");
     }
-    person.memory()
+    panic!("the window does not come to rest");
 }
 
 /// True when a second comes in which the window computes next to nothing.

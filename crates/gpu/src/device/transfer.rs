@@ -6,7 +6,6 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::task::{Context, Poll, Waker};
 use std::time::Duration;
 
-use super::gpu::PATIENCE;
 use crate::{Copied, Gpu, GpuError};
 
 /// Interval at which a waiting host checks for a lost device.
@@ -183,7 +182,7 @@ impl Mapping {
         }
         gpu.wait_for(self.submission.take())?;
         // Another thread that polled the device may hold the news, and is about to deliver it.
-        for _ in 0..PATIENCE.as_millis() / LOOK.as_millis() {
+        for _ in 0..gpu.patience().as_millis() / LOOK.as_millis() {
             if self.is_there(gpu)? {
                 return Ok(());
             }
