@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use strandline_body::BodyFrame;
+use strandline_body::{BodyFrame, Mannequin};
 use strandline_checks::{flip::compare, gpu};
 use strandline_groom::Style;
 use strandline_render::gpu::GpuRenderer;
@@ -18,6 +18,8 @@ const ONE_IN_A_HUNDRED: f32 = 0.1;
 fn scene() -> Both {
     let mut both = Both::new(Style::Pixie, 12);
     both.settings = PictureSettings::sized(192, 192);
+    // Normals of skin that moves by itself are those of its triangles: near those of the form where they are small.
+    both.mesh = Mannequin::new().coarse_mesh(1.5);
     both
 }
 

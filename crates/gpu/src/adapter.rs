@@ -1,4 +1,6 @@
 use std::fmt;
+#[cfg(feature = "wgpu")]
+use std::time::Duration;
 
 /// Description of an adapter before it is opened.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,6 +33,12 @@ impl Adapter {
             interface: info.backend.to_string(),
             software: info.device_type == wgpu::DeviceType::Cpu,
         }
+    }
+
+    /// Time after which a submission counts as hung. A software adapter compiles a kernel when it first runs: Mesa 22.3 takes
+    /// a minute of a processor for the search of a skin, and two and a half on a busy machine.
+    pub(crate) fn patience(&self) -> Duration {
+        Duration::from_secs(if self.software { 600 } else { 120 })
     }
 }
 

@@ -1,17 +1,10 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
 
 use super::errors::{Errors, Refusal, answered, now};
 use super::pipelines::Pipelines;
 use super::wanted::Wanted;
 use crate::{Adapter, Crossed, GpuError};
-
-/// Time after which a submission counts as hung.
-const PATIENCE: Duration = Duration::from_secs(120);
-/// The same of a software adapter, which compiles a kernel when it first runs: Mesa 22.3 takes a minute of a processor for
-/// the search of a skin, and two and a half on a busy machine.
-const SOFTWARE_PATIENCE: Duration = Duration::from_secs(600);
 
 /// A device and its queue. Clones share them.
 #[derive(Clone, Debug)]
@@ -298,15 +291,10 @@ impl Gpu {
         self.check()?;
         self.check_wait("the call")?;
         self.shared.waits.fetch_add(1, Relaxed);
-        let patience = wgpu::PollType::Wait { submission_index, timeout: Some(self.patience()) };
+        let patience = wgpu::PollType::Wait { submission_index, timeout: Some(self.adapter().patience()) };
         let polled = self.surviving(|| self.device().poll(patience))?;
         self.check()?;
         polled.map(drop).map_err(|error| GpuError::Lost { adapter: self.name(), reason: error.to_string() })
-    }
-
-    /// Time after which a submission counts as hung.
-    pub(super) fn patience(&self) -> Duration {
-        if self.adapter().software { SOFTWARE_PATIENCE } else { PATIENCE }
     }
 
     /// Processes finished work.

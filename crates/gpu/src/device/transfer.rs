@@ -182,7 +182,7 @@ impl Mapping {
         }
         gpu.wait_for(self.submission.take())?;
         // Another thread that polled the device may hold the news, and is about to deliver it.
-        for _ in 0..gpu.patience().as_millis() / LOOK.as_millis() {
+        for _ in 0..gpu.adapter().patience().as_millis() / LOOK.as_millis() {
             if self.is_there(gpu)? {
                 return Ok(());
             }

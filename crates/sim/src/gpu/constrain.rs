@@ -30,9 +30,9 @@ impl StageKernels for Stage {
     }
 
     fn new(gpu: &Gpu, model: &Model) -> Result<Self, GpuError> {
-        let points = model.points_per_strand;
+        let points = room(model.points_per_strand);
         let strands = strands_per_workgroup(points);
-        // POINTS and STRANDS of strand.wesl.
+        // MOST_POINTS and STRANDS of strand.wesl.
         let constants = [("0", points as f64), ("1", strands as f64), skins_constant(&model.colliders)];
         Ok(Self { kernel: Kernel::new(gpu, &constants)?, strands_per_workgroup: strands })
     }
@@ -54,6 +54,12 @@ impl StageKernels for Stage {
     }
 }
 
+/// Points that a kernel has room for, so that strands of other lengths seldom need another one: a compiler takes a second to
+/// a minute for it.
+fn room(points: usize) -> usize {
+    points.next_power_of_two().max(16)
+}
+
 /// Strands whose points fit a workgroup's 16 KiB, a power of two and no more than a workgroup's
 /// threads elsewhere.
 fn strands_per_workgroup(points: usize) -> usize {
@@ -69,8 +75,9 @@ mod tests {
     #[test]
     fn strands_of_any_length_fit_the_workgroup_memory() {
         for points in 4..=64 {
-            let strands = strands_per_workgroup(points);
-            assert!(strands >= 16 && strands * points * 12 <= 16_384, "{points}: {strands}");
+            let room = room(points);
+            let strands = strands_per_workgroup(room);
+            assert!(room >= points && strands >= 16 && strands * room * 12 <= 16_384, "{points}: {strands}");
         }
     }
 }
