@@ -1,6 +1,6 @@
 //! Bound strands placed on a GPU against the same on the CPU.
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use glam::{Quat, Vec3};
 use strandline_body::{BodyFrame, Carrier, Collider, DistanceGrid, Mannequin, Pose, Shape, Solids};
@@ -14,8 +14,13 @@ use strandline_render::{BodyLook, Camera, FrameInput, LevelOfDetail, Light, Look
 pub(crate) const POINTS: usize = 12;
 const STRANDS: usize = 1200;
 
-/// Strands of a style, of which every thirtieth is a guide.
+/// Strands of a style, of which every thirtieth is a guide: grown once for all tests.
 pub(crate) fn binding() -> Arc<Binding> {
+    static GROWN: LazyLock<Arc<Binding>> = LazyLock::new(grown);
+    GROWN.clone()
+}
+
+fn grown() -> Arc<Binding> {
     let groom = StyleSettings { strand_count: STRANDS, ..StyleSettings::new(Style::Long) }.grow().unwrap();
     let chosen: Vec<usize> = (0..groom.strand_count()).step_by(30).collect();
     let resample = |groom| Guides::resample(groom, POINTS).unwrap();
