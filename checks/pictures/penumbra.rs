@@ -145,13 +145,14 @@ fn picture_in(
 
 /// Light of the floor at places along x.
 fn floor(on: &On, caster: Caster, light: Light) -> Vec<f32> {
+    // The rows about the middle one, which is read, of a picture 240 pixels high of 35 degrees.
     let camera = Camera {
         position: Vec3::new(0.0, 0.25, 0.7),
         target: Vec3::ZERO,
-        field_of_view: 35.0,
+        field_of_view: 3.612,
         ..Camera::default()
     };
-    let picture = picture(on, (&hair(caster), &body(caster)), &camera, light, [640, 240]);
+    let picture = picture(on, (&hair(caster), &body(caster)), &camera, light, [640, 24]);
     let view_from_world = camera.view_from_world();
     let shown = |x: f32| {
         let seen = view_from_world.transform_point3(Vec3::X * x);
