@@ -44,8 +44,9 @@ fn drawn(on: &On, guides: Guides, change: impl FnOnce(&mut Look)) -> Drawn {
         root_width: 1.0,
         ..crate::light::look(Chiang::default())
     };
-    // A software adapter takes part of a second of processors for each.
+    // A software adapter takes part of a second of processors for each, and that among many cells.
     look.fibre.chiang.scatterings = on.short(look.fibre.chiang.scatterings, 8);
+    look.fibre.chiang.cells = on.short(look.fibre.chiang.cells, 16);
     change(&mut look);
     let detail = LevelOfDetail { segments_per_span: 1, ..LevelOfDetail::full() };
     Drawn { guides, look, lights: vec![sun()], eye: Vec3::new(0.5, 0.3, 2.0), detail }

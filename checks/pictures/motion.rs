@@ -47,7 +47,8 @@ fn motions(on: &On, places: &[Place]) -> Vec<Vec<Vec2>> {
     let body = Mesh::new(corners, vec![[0, 1, 2], [0, 2, 3]]).unwrap();
     let settings = PictureSettings { layers: true, ..PictureSettings::sized(SIDE, SIDE) };
     let at_rest = strand();
-    let look = Look { follow_strands: 1, hair_count: 0, tip_width: 1.0, ..Look::brown() };
+    // Light moves nothing.
+    let look = Look { follow_strands: 1, hair_count: 0, tip_width: 1.0, ..Look::thesis() };
     let mut on_cpu = Renderer::new(&at_rest, Some(&body), &settings).unwrap();
     let mut on_gpu = match on {
         On::Gpu(gpu) => Some(GpuRenderer::new(gpu, &at_rest, Some(&body), &settings).unwrap()),
