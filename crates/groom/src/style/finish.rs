@@ -5,11 +5,12 @@ use std::f32::consts::TAU;
 use glam::{Vec2, Vec3};
 use strandline_base::math;
 use strandline_base::par::prelude::*;
-use strandline_body::{Mannequin, Random};
+use strandline_body::{Random, Scalp};
 
 use super::StyleSettings;
 use super::comb::smooth;
-use super::strand::{CLEARANCE, Strand, outside};
+use super::skin::Skin;
+use super::strand::{CLEARANCE, Strand};
 use crate::arcs::equal_arcs;
 
 /// Angle \[rad\] by which disorder of a strand in a lock of curls is out of step with that of the lock.
@@ -18,14 +19,15 @@ const OUT_OF_STEP: f32 = 0.7;
 /// The shaped strands, and the clump of each.
 pub fn finish(
     settings: &StyleSettings,
-    mannequin: &Mannequin,
+    skin: &Skin,
+    scalp: &Scalp,
     strands: &[Strand],
 ) -> (Vec<Strand>, Vec<u32>) {
-    let count = (mannequin.scalp().area() / settings.clump_width.powi(2)).ceil() as usize;
+    let count = (scalp.area() / settings.clump_width.powi(2)).ceil() as usize;
     let clumps = clumps(count.clamp(1, strands.len()), strands);
     let shaped = strands.par_iter().enumerate().map(|(index, strand)| {
         let center = &strands[clumps[index] as usize];
-        let points = shape(settings, mannequin, strand, center, index, clumps[index]);
+        let points = shape(settings, skin, strand, center, index, clumps[index]);
         Strand { root: strand.root, side: strand.side, points }
     });
     let strands = shaped.collect();
@@ -69,7 +71,7 @@ fn clumps(count: usize, strands: &[Strand]) -> Vec<u32> {
 
 fn shape(
     settings: &StyleSettings,
-    mannequin: &Mannequin,
+    skin: &Skin,
     strand: &Strand,
     center: &Strand,
     index: usize,
@@ -88,11 +90,11 @@ fn shape(
         .collect();
     points[0] = strand.root.position;
     for point in &mut points[1..] {
-        *point = outside(mannequin, *point, CLEARANCE);
+        *point = skin.outside(*point, CLEARANCE);
     }
     let mut even: Vec<Vec3> = equal_arcs(&points, points.len()).collect();
     for point in &mut even[1..] {
-        *point = outside(mannequin, *point, 0.7 * CLEARANCE);
+        *point = skin.outside(*point, 0.7 * CLEARANCE);
     }
     even
 }

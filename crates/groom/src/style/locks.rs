@@ -6,13 +6,14 @@ use std::f32::consts::TAU;
 use glam::Vec3;
 use strandline_base::math;
 use strandline_base::par::prelude::*;
-use strandline_body::{Mannequin, Random};
+use strandline_body::Random;
 
 use super::StyleSettings;
 use super::comb::smooth;
 use super::finish::{Bends, frames};
 use super::hair::Between;
-use super::strand::{CLEARANCE, Strand, WIDTH, outside};
+use super::skin::Skin;
+use super::strand::{CLEARANCE, Strand, WIDTH};
 use crate::arcs::equal_arcs;
 
 /// Strands of a small lock: neighbours on the skin.
@@ -38,7 +39,7 @@ pub(super) struct Shaped {
 /// Shapes strands between guides; `clumps` gives the guide in the middle of each guide's lock.
 pub(super) fn shape(
     settings: &StyleSettings,
-    mannequin: &Mannequin,
+    skin: &Skin,
     guides: &[Strand],
     clumps: &[u32],
     hair: &[Between],
@@ -50,7 +51,7 @@ pub(super) fn shape(
         let middle = &hair[(lock * SMALL_LOCK + SMALL_LOCK / 2).min(hair.len() - 1)];
         let clump = clumps[own.guide];
         let Some(large) = larges.get(&clump) else { unreachable!("every lock has a middle") };
-        One { settings, own, middle, large, closing: &closing, clump, lock, index }.shape(mannequin)
+        One { settings, own, middle, large, closing: &closing, clump, lock, index }.shape(skin)
     });
     shaped.collect()
 }
@@ -101,7 +102,7 @@ struct One<'a> {
 }
 
 impl One<'_> {
-    fn shape(&self, mannequin: &Mannequin) -> Shaped {
+    fn shape(&self, skin: &Skin) -> Shaped {
         let mut random = Random::new(self.settings.seed, 7_000_000_000 + self.index as u64);
         let is_stray = random.unit() < self.settings.strays;
         let [pull, frizz, depth, thick] = std::array::from_fn(|_| random.unit());
@@ -131,7 +132,7 @@ impl One<'_> {
         let mut even: Vec<Vec3> = equal_arcs(&cut(points, kept), last + 1).collect();
         let clearance = CLEARANCE * (0.5 + 0.9 * depth);
         for point in &mut even[1..] {
-            *point = outside(mannequin, *point, clearance);
+            *point = skin.outside(*point, clearance);
         }
         let fine = 0.55 + 0.45 * self.own.density;
         Shaped { points: even, width: WIDTH * (0.8 + 0.4 * thick) * fine }
