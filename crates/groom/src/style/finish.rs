@@ -15,6 +15,11 @@ use crate::arcs::equal_arcs;
 
 /// Angle \[rad\] by which disorder of a strand in a lock of curls is out of step with that of the lock.
 const OUT_OF_STEP: f32 = 0.7;
+/// Shares of their length between which curls close to locks, and the pull of these over that of other locks.
+const CURLS_CLOSE: [f32; 2] = [0.04, 0.35];
+const CURLS_HELD: f32 = 1.2;
+/// Most of the way to the middle of its lock that a guide is drawn: none is a copy of another.
+const MOST_PULL: f32 = 0.85;
 
 /// The shaped strands, and the clump of each.
 pub fn finish(
@@ -179,12 +184,22 @@ impl Bends {
     }
 }
 
+/// Share of the pull toward a lock that is reached at a share of a strand's length. Curls close to locks that are thinner
+/// than curls are wide by a third of their length: wider ones are a bush.
+pub(super) fn closed(settings: &StyleSettings, share: f32) -> f32 {
+    if settings.is_curled() {
+        CURLS_HELD * smooth(CURLS_CLOSE[0], CURLS_CLOSE[1], share)
+    } else {
+        math::powf(share, 1.3)
+    }
+}
+
 /// A strand drawn toward the middle of its clump.
 fn clumped(settings: &StyleSettings, strand: &Strand, center: &Strand, point: usize, share: f32) -> Vec3 {
     let here = strand.points[point];
     // Strands that parted ways, at the neck for example, do not meet again.
     let apart = here.distance(center.points[point]);
-    let pull = settings.clump_share * math::powf(share, 1.3) * smooth(0.05, 0.02, apart);
+    let pull = (settings.clump_share * closed(settings, share)).min(MOST_PULL) * smooth(0.05, 0.02, apart);
     here.lerp(center.points[point], pull)
 }
 

@@ -10,7 +10,7 @@ use strandline_body::Random;
 
 use super::StyleSettings;
 use super::comb::smooth;
-use super::finish::{Bends, frames};
+use super::finish::{Bends, closed, frames};
 use super::hair::Between;
 use super::skin::Skin;
 use super::strand::{CLEARANCE, Strand, WIDTH};
@@ -24,9 +24,6 @@ const APART: [[f32; 2]; 2] = [[0.05, 0.02], [0.03, 0.012]];
 const STRAY: f32 = 3.5;
 /// Distance \[m\] by which strays stand off at their tips.
 const STRAY_OUT: f32 = 0.006;
-/// Shares of their length between which curls close to large locks, and the pull of these over that of other locks.
-const CURLS_CLOSE: [f32; 2] = [0.06, 0.55];
-const CURLS_HELD: f32 = 1.25;
 /// Share of the strands on the hairline itself that are short, and their lengths \[m\].
 const SHORT: (f32, [f32; 2]) = (0.5, [0.008, 0.035]);
 
@@ -73,19 +70,11 @@ fn larges<'a>(guides: &'a [Strand], clumps: &[u32]) -> HashMap<u32, Large<'a>> {
     named.into_iter().map(large).collect()
 }
 
-/// Shares of the pull toward a small and a large lock that points of a strand have reached. Curls close to locks that are
-/// thinner than curls are wide by the middle of their length: wider ones are a bush.
+/// Shares of the pull toward a small and a large lock that points of a strand have reached.
 fn closing(settings: &StyleSettings) -> Vec<[f32; 2]> {
     let last = settings.points() - 1;
-    let large = |share: f32| {
-        if settings.is_curled() {
-            CURLS_HELD * smooth(CURLS_CLOSE[0], CURLS_CLOSE[1], share)
-        } else {
-            math::powf(share, 1.3)
-        }
-    };
     let share = |point: usize| point as f32 / last as f32;
-    (0..=last).map(|point| [math::powf(share(point), 0.7), large(share(point))]).collect()
+    (0..=last).map(|point| [math::powf(share(point), 0.7), closed(settings, share(point))]).collect()
 }
 
 /// A strand while it is shaped.
