@@ -178,9 +178,12 @@ impl Scalp {
 
     /// The root nearest to a place near the skin \[m\], if hair grows there.
     fn root_at(&self, guess: Vec3) -> Option<Root> {
-        let (position, normal) = self.mannequin.nearest_skin(guess);
-        let on_skin = self.mannequin.distance(position).abs() < 1e-5;
-        (on_skin && self.contains(position)).then(|| Root { position, normal, uv: uv(position) })
+        let (position, distance, normal) = self.mannequin.settled(guess);
+        (distance.abs() < 1e-5 && self.contains(position)).then(|| Root {
+            position,
+            normal,
+            uv: uv(position),
+        })
     }
 
     /// A place near the skin \[m\], from the table.

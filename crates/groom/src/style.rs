@@ -8,6 +8,7 @@ mod hair;
 mod locks;
 mod near;
 mod settings;
+mod skin;
 mod strand;
 
 use strandline_base::choices;

@@ -2,6 +2,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use super::field::Field;
 use super::person::{Build, Eyes};
 use super::shape::BustShape;
 use crate::{Aabb, SignedDistance};
@@ -50,6 +51,15 @@ impl Mannequin {
         STEEP_ENOUGH + (1.0 - STEEP_ENOUGH) * (1.0 - off).clamp(0.0, 1.0)
     }
 
+    /// Distance \[m\] from the skin and direction away from it at a point, from the field there.
+    pub(super) fn distance_of(&self, point: Vec3, field: &Field) -> (f32, Vec3) {
+        let steepness = field.gradient.length().max(self.steep_enough(point));
+        let fade = (2.0 - field.value.abs() / CORRECTED).clamp(0.0, 1.0);
+        let value = field.value / (1.0 + (steepness - 1.0) * fade);
+        let distance = if value > FAR { FAR + FAR_RATE * (value - FAR) } else { value };
+        (distance, field.gradient.normalize_or(Vec3::Y))
+    }
+
     /// True where the eyeballs show.
     pub(super) fn has_open_eyes(&self) -> bool {
         self.eyes == Eyes::Open
@@ -84,12 +94,7 @@ impl SignedDistance for Mannequin {
     }
 
     fn distance_and_gradient(&self, point: Vec3) -> (f32, Vec3) {
-        let field = self.shape.at(point);
-        let steepness = field.gradient.length().max(self.steep_enough(point));
-        let fade = (2.0 - field.value.abs() / CORRECTED).clamp(0.0, 1.0);
-        let value = field.value / (1.0 + (steepness - 1.0) * fade);
-        let distance = if value > FAR { FAR + FAR_RATE * (value - FAR) } else { value };
-        (distance, field.gradient.normalize_or(Vec3::Y))
+        self.distance_of(point, &self.shape.at(point))
     }
 
     fn is_symmetric(&self) -> bool {

@@ -3,6 +3,7 @@ use fast_surface_nets::{SurfaceNetsBuffer, surface_nets};
 use glam::{UVec3, Vec3};
 use strandline_base::par::prelude::*;
 
+use super::field::Field;
 use super::model::Mannequin;
 use crate::{Mesh, SignedDistance};
 
@@ -28,6 +29,13 @@ impl Mannequin {
     /// Carries a place near the skin \[m\] onto it: the place on the skin and its unit normal.
     pub fn nearest_skin(&self, point: Vec3) -> (Vec3, Vec3) {
         settle(self, point)
+    }
+
+    /// As [`Mannequin::nearest_skin`], with the signed distance \[m\] of what was found: not all skin can be.
+    pub(crate) fn settled(&self, point: Vec3) -> (Vec3, f32, Vec3) {
+        let (point, field) = newton(self, point);
+        let (distance, normal) = self.distance_of(point, &field);
+        (point, distance, normal)
     }
 }
 
@@ -120,13 +128,25 @@ impl Slab<'_> {
 }
 
 /// Carries a point near the skin onto it; the point and the normal there.
-pub(super) fn settle(mannequin: &Mannequin, mut point: Vec3) -> (Vec3, Vec3) {
+pub(super) fn settle(mannequin: &Mannequin, point: Vec3) -> (Vec3, Vec3) {
+    let (point, field) = newton(mannequin, point);
+    (point, field.gradient.normalize_or(Vec3::Y))
+}
+
+/// The point that some Newton steps toward the skin reach, and the field there.
+fn newton(mannequin: &Mannequin, mut point: Vec3) -> (Vec3, Field) {
+    let mut field = mannequin.shape.at(point);
     for _ in 0..NEWTON_STEPS {
-        let field = mannequin.shape.at(point);
+        let before = point.to_array().map(f32::to_bits);
         let step = field.gradient * (field.value / field.gradient.length_squared().max(1e-2));
         point -= step.clamp_length_max(LONGEST_STEP);
+        // All further steps are the same.
+        if point.to_array().map(f32::to_bits) == before {
+            break;
+        }
+        field = mannequin.shape.at(point);
     }
-    (point, mannequin.shape.at(point).gradient.normalize_or(Vec3::Y))
+    (point, field)
 }
 
 #[cfg(test)]

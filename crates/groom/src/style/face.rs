@@ -6,7 +6,8 @@ use strandline_base::par::prelude::*;
 use strandline_body::{Mannequin, Random, Root, SignedDistance};
 
 use super::comb::smooth;
-use super::strand::{CLEARANCE, Strand, outside};
+use super::skin::Skin;
+use super::strand::{CLEARANCE, Strand};
 use super::{Style, StyleSettings};
 
 /// Places that are tried for each root at most.
@@ -20,19 +21,14 @@ const BROW: ([Vec2; 2], f32, f32) = ([Vec2::new(0.013, 0.000), Vec2::new(0.052, 
 const UNEVEN: f32 = 0.0016;
 
 /// Grows strands of the face from `first` on.
-pub(super) fn strands(
-    settings: &StyleSettings,
-    mannequin: &Mannequin,
-    first: usize,
-    count: usize,
-) -> Vec<Strand> {
-    let strand = |index: usize| strand(settings, mannequin, first + index);
+pub(super) fn strands(settings: &StyleSettings, skin: &Skin, first: usize, count: usize) -> Vec<Strand> {
+    let strand = |index: usize| strand(settings, skin, first + index);
     (0..count).into_par_iter().map(strand).collect()
 }
 
 /// One strand: along the skin as its style combs it, a little off it.
-fn strand(settings: &StyleSettings, mannequin: &Mannequin, index: usize) -> Strand {
-    let (root, thin) = root(settings, mannequin, index);
+fn strand(settings: &StyleSettings, skin: &Skin, index: usize) -> Strand {
+    let (root, thin) = root(settings, skin.mannequin(), index);
     let mut random = Random::new(settings.seed, 12_000_000_000 + index as u64);
     let shorter = settings.length_variation * random.unit();
     let length = settings.length * (1.0 - shorter) * (0.5 + 0.5 * thin);
@@ -53,15 +49,17 @@ fn strand(settings: &StyleSettings, mannequin: &Mannequin, index: usize) -> Stra
     let across = flow.cross(root.normal).normalize_or(Vec3::X);
     let mut points = vec![root.position];
     let mut point = root.position;
+    let mut above = skin.mannequin().distance_and_gradient(point);
     for index in 1..=last {
-        let out = mannequin.distance_and_gradient(point).1;
+        let out = above.1;
         let share = index as f32 / last as f32;
         let along = (flow - out * flow.dot(out)).normalize_or(flow);
         let way = along + out * lift * (1.4 - share);
         let angle = phase + std::f32::consts::TAU * share * length / settings.curl_length;
         let turn = curl * std::f32::consts::TAU / settings.curl_length;
         let curled = turn * (math::cos(angle) * across - math::sin(angle) * out);
-        point = outside(mannequin, point + (way + curled).normalize_or(way) * step, 0.6 * CLEARANCE);
+        let next = point + (way + curled).normalize_or(way) * step;
+        (point, above) = skin.led_outside(next, 0.6 * CLEARANCE);
         points.push(point);
     }
     Strand { root, side, points }
@@ -88,7 +86,7 @@ fn root(settings: &StyleSettings, mannequin: &Mannequin, index: usize) -> (Root,
                 (JAW + 0.2 * out, -out)
             }
         };
-        let Some(position) = skin(mannequin, start, way) else { continue };
+        let Some(position) = first_skin(mannequin, start, way) else { continue };
         let (position, normal) = mannequin.nearest_skin(position);
         let thick = if settings.style == Style::Brows { 1.0 } else { bearded(position, normal) };
         let uv = Vec2::new(0.5 + 2.0 * position.x, 0.5 + 2.0 * position.y).clamp(Vec2::ZERO, Vec2::ONE);
@@ -101,7 +99,7 @@ fn root(settings: &StyleSettings, mannequin: &Mannequin, index: usize) -> (Root,
 }
 
 /// The first place on the skin along a way \[m\].
-fn skin(mannequin: &Mannequin, start: Vec3, way: Vec3) -> Option<Vec3> {
+fn first_skin(mannequin: &Mannequin, start: Vec3, way: Vec3) -> Option<Vec3> {
     let mut passed = 0.0;
     for _ in 0..48 {
         let distance = mannequin.distance(start + way * passed);

@@ -5,27 +5,34 @@ use std::f32::consts::TAU;
 use glam::{Vec2, Vec3};
 use strandline_base::math;
 use strandline_base::par::prelude::*;
-use strandline_body::{Mannequin, Random};
+use strandline_body::{Random, Scalp};
 
 use super::StyleSettings;
 use super::comb::smooth;
-use super::strand::{CLEARANCE, Strand, outside};
+use super::skin::Skin;
+use super::strand::{CLEARANCE, Strand};
 use crate::arcs::equal_arcs;
 
 /// Angle \[rad\] by which disorder of a strand in a lock of curls is out of step with that of the lock.
 const OUT_OF_STEP: f32 = 0.7;
+/// Shares of their length between which curls close to locks, and the pull of these over that of other locks.
+const CURLS_CLOSE: [f32; 2] = [0.04, 0.35];
+const CURLS_HELD: f32 = 1.2;
+/// Most of the way to the middle of its lock that a guide is drawn: none is a copy of another.
+const MOST_PULL: f32 = 0.85;
 
 /// The shaped strands, and the clump of each.
 pub fn finish(
     settings: &StyleSettings,
-    mannequin: &Mannequin,
+    skin: &Skin,
+    scalp: &Scalp,
     strands: &[Strand],
 ) -> (Vec<Strand>, Vec<u32>) {
-    let count = (mannequin.scalp().area() / settings.clump_width.powi(2)).ceil() as usize;
+    let count = (scalp.area() / settings.clump_width.powi(2)).ceil() as usize;
     let clumps = clumps(count.clamp(1, strands.len()), strands);
     let shaped = strands.par_iter().enumerate().map(|(index, strand)| {
         let center = &strands[clumps[index] as usize];
-        let points = shape(settings, mannequin, strand, center, index, clumps[index]);
+        let points = shape(settings, skin, strand, center, index, clumps[index]);
         Strand { root: strand.root, side: strand.side, points }
     });
     let strands = shaped.collect();
@@ -69,7 +76,7 @@ fn clumps(count: usize, strands: &[Strand]) -> Vec<u32> {
 
 fn shape(
     settings: &StyleSettings,
-    mannequin: &Mannequin,
+    skin: &Skin,
     strand: &Strand,
     center: &Strand,
     index: usize,
@@ -88,11 +95,11 @@ fn shape(
         .collect();
     points[0] = strand.root.position;
     for point in &mut points[1..] {
-        *point = outside(mannequin, *point, CLEARANCE);
+        *point = skin.outside(*point, CLEARANCE);
     }
     let mut even: Vec<Vec3> = equal_arcs(&points, points.len()).collect();
     for point in &mut even[1..] {
-        *point = outside(mannequin, *point, 0.7 * CLEARANCE);
+        *point = skin.outside(*point, 0.7 * CLEARANCE);
     }
     even
 }
@@ -177,12 +184,22 @@ impl Bends {
     }
 }
 
+/// Share of the pull toward a lock that is reached at a share of a strand's length. Curls close to locks that are thinner
+/// than curls are wide by a third of their length: wider ones are a bush.
+pub(super) fn closed(settings: &StyleSettings, share: f32) -> f32 {
+    if settings.is_curled() {
+        CURLS_HELD * smooth(CURLS_CLOSE[0], CURLS_CLOSE[1], share)
+    } else {
+        math::powf(share, 1.3)
+    }
+}
+
 /// A strand drawn toward the middle of its clump.
 fn clumped(settings: &StyleSettings, strand: &Strand, center: &Strand, point: usize, share: f32) -> Vec3 {
     let here = strand.points[point];
     // Strands that parted ways, at the neck for example, do not meet again.
     let apart = here.distance(center.points[point]);
-    let pull = settings.clump_share * math::powf(share, 1.3) * smooth(0.05, 0.02, apart);
+    let pull = (settings.clump_share * closed(settings, share)).min(MOST_PULL) * smooth(0.05, 0.02, apart);
     here.lerp(center.points[point], pull)
 }
 

@@ -1,7 +1,5 @@
 //! Grows strands step by step from their roots over the skull and down.
 
-use std::sync::Arc;
-
 use glam::Vec3;
 use strandline_base::math;
 use strandline_base::memory::{self, Need};
@@ -12,7 +10,8 @@ use super::comb::{Combed, Place, TIE_RADIUS, smooth};
 use super::face;
 use super::hair;
 use super::locks::{self, Shaped};
-use super::strand::{CLEARANCE, Strand, WIDTH, beside_parting, outside};
+use super::skin::Skin;
+use super::strand::{CLEARANCE, Strand, WIDTH, beside_parting};
 use super::{Style, StyleSettings, finish};
 use crate::arcs::equal_arcs;
 use crate::{Groom, GroomError, Widths};
@@ -51,22 +50,24 @@ impl StyleSettings {
         let mannequin = Mannequin::new();
         let more = drawn.saturating_sub(self.strand_count);
         if self.style.is_of_face() {
-            let grown = face::strands(self, &mannequin, 0, self.strand_count.max(drawn));
+            let grown = face::strands(self, &Skin::new(mannequin), 0, self.strand_count.max(drawn));
             let grown = grown.into_iter().map(|strand| Grown::new(strand, 0));
             return Ok(groom(grown.collect(), self.strand_count));
         }
-        let roots = mannequin.scalp().roots(self.strand_count, self.seed);
+        let skin = Skin::new(mannequin.clone());
+        let scalp = mannequin.scalp();
+        let roots = scalp.roots(self.strand_count, self.seed);
         let combed: Vec<Strand> = roots
             .into_par_iter()
             .enumerate()
-            .map(|(index, root)| march(self, &mannequin, index, beside_parting(self, &mannequin, root)))
+            .map(|(index, root)| march(self, &skin, index, beside_parting(self, &mannequin, root)))
             .collect();
-        let (guides, clumps) = finish::finish(self, &mannequin, &combed);
+        let (guides, clumps) = finish::finish(self, &skin, &scalp, &combed);
         let mut grown: Vec<Grown> =
             guides.into_iter().zip(&clumps).map(|(strand, clump)| Grown::new(strand, *clump)).collect();
         if more > 0 {
-            let hair = hair::between(self, &mannequin, &combed, more);
-            let shaped = locks::shape(self, &mannequin, &combed, &clumps, &hair);
+            let hair = hair::between(self, &mannequin, &scalp, &combed, more);
+            let shaped = locks::shape(self, &skin, &combed, &clumps, &hair);
             grown.extend(hair.into_iter().zip(shaped).map(|(own, Shaped { points, width })| Grown {
                 width,
                 ..Grown::new(Strand { points, ..own.strand }, clumps[own.guide])
@@ -92,6 +93,8 @@ impl Grown {
 /// The groom of strands; the first are guides, and marked where there are others.
 fn groom(grown: Vec<Grown>, guide_count: usize) -> Groom {
     let mut groom = Groom::empty(WIDTH);
+    groom.starts.reserve_exact(grown.len());
+    groom.points.reserve_exact(grown.iter().map(|one| one.strand.points.len()).sum());
     for one in &grown {
         groom.push(one.strand.points.iter().copied());
     }
@@ -118,7 +121,7 @@ impl StyleSettings {
 }
 
 /// One strand, from its root to where it is cut.
-fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, root: Root) -> Strand {
+fn march(settings: &StyleSettings, skin: &Skin, index: usize, root: Root) -> Strand {
     let mut random = Random::new(settings.seed, 1000 + index as u64);
     let [chance, variation, depth, cut] = std::array::from_fn(|_| random.unit());
     let place = math::unit_at(std::f32::consts::TAU * random.unit()) * random.unit().sqrt();
@@ -133,7 +136,7 @@ fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, roo
     let mut direction = leaving(settings, &combed);
     let mut passed_tie = 0.0;
     let steps = (length / STEP).ceil() as usize;
-    let mut above = covered(settings, mannequin, point);
+    let mut above = covered(settings, point, skin.mannequin().distance_and_gradient(point));
     for step in 1..=steps {
         let (distance, out) = above;
         let place = Place { point, distance, out, passed: passed_tie };
@@ -149,7 +152,7 @@ fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, roo
         }
         let before = point;
         let least = clearance.min(distance + 0.5 * STEP).max(CLEARANCE);
-        (point, above) = uncovered(settings, mannequin, point + direction * STEP, least);
+        (point, above) = uncovered(settings, skin, point + direction * STEP, least);
         direction = (point - before).normalize_or(direction);
         points.push(point);
         if settings.style.is_tied() {
@@ -161,7 +164,7 @@ fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, roo
             break;
         }
     }
-    smooth_out(&mut points, mannequin);
+    smooth_out(&mut points, skin);
     let points = equal_arcs(&points, settings.points()).collect();
     Strand { root, side: combed.side, points }
 }
@@ -190,9 +193,9 @@ fn style_length(settings: &StyleSettings, root: &Root) -> f32 {
     }
 }
 
-/// Distance \[m\] and direction away from the skin, ears smoothed over where hair falls across them.
-fn covered(settings: &StyleSettings, mannequin: &Mannequin, point: Vec3) -> (f32, Vec3) {
-    let (distance, out) = mannequin.distance_and_gradient(point);
+/// Distance \[m\] and direction away from the skin, ears smoothed over where hair falls across them, from those of the
+/// skin itself.
+fn covered(settings: &StyleSettings, point: Vec3, (distance, out): (f32, Vec3)) -> (f32, Vec3) {
     if !settings.style.is_parted() {
         return (distance, out);
     }
@@ -208,24 +211,19 @@ fn covered(settings: &StyleSettings, mannequin: &Mannequin, point: Vec3) -> (f32
 }
 
 /// Moves a point out of the body and of the domes over the ears: the point, and what [`covered`] says there.
-fn uncovered(
-    settings: &StyleSettings,
-    mannequin: &Mannequin,
-    point: Vec3,
-    clearance: f32,
-) -> (Vec3, (f32, Vec3)) {
-    let above = covered(settings, mannequin, point);
+fn uncovered(settings: &StyleSettings, skin: &Skin, point: Vec3, clearance: f32) -> (Vec3, (f32, Vec3)) {
+    let above = covered(settings, point, skin.mannequin().distance_and_gradient(point));
     let (distance, out) = above;
     // The domes only come nearer than the skin.
     if distance >= clearance {
         return (point, above);
     }
-    let moved = outside(mannequin, point + out * (clearance - distance), clearance);
-    (moved, covered(settings, mannequin, moved))
+    let (moved, skin_there) = skin.led_outside(point + out * (clearance - distance), clearance);
+    (moved, covered(settings, moved, skin_there))
 }
 
 /// Takes the corners out of a strand without drawing it into the body; the root stays.
-fn smooth_out(points: &mut [Vec3], mannequin: &Mannequin) {
+fn smooth_out(points: &mut [Vec3], skin: &Skin) {
     for pass in 1..=8 {
         let mut before = points[0];
         for index in 1..points.len().saturating_sub(1) {
@@ -233,7 +231,7 @@ fn smooth_out(points: &mut [Vec3], mannequin: &Mannequin) {
             let middle = 0.25 * before + 0.5 * here + 0.25 * points[index + 1];
             before = here;
             // A pass moves a point by less than a tenth of a millimetre into the skull.
-            points[index] = if pass % 4 == 0 { outside(mannequin, middle, CLEARANCE) } else { middle };
+            points[index] = if pass % 4 == 0 { skin.outside(middle, CLEARANCE) } else { middle };
         }
     }
 }

@@ -46,13 +46,13 @@ pub(super) struct Between {
 pub(super) fn between(
     settings: &StyleSettings,
     mannequin: &Mannequin,
+    scalp: &Scalp,
     guides: &[Strand],
     count: usize,
 ) -> Vec<Between> {
-    let scalp = mannequin.scalp();
     let places = guides.iter().map(|guide| guide.root.position).collect();
     let near = Near::new(places, scalp.area());
-    let roots = roots(settings, &scalp, guides, count);
+    let roots = roots(settings, scalp, guides, count);
     roots
         .into_par_iter()
         .enumerate()

@@ -6,13 +6,14 @@ use std::f32::consts::TAU;
 use glam::Vec3;
 use strandline_base::math;
 use strandline_base::par::prelude::*;
-use strandline_body::{Mannequin, Random};
+use strandline_body::Random;
 
 use super::StyleSettings;
 use super::comb::smooth;
-use super::finish::{Bends, frames};
+use super::finish::{Bends, closed, frames};
 use super::hair::Between;
-use super::strand::{CLEARANCE, Strand, WIDTH, outside};
+use super::skin::Skin;
+use super::strand::{CLEARANCE, Strand, WIDTH};
 use crate::arcs::equal_arcs;
 
 /// Strands of a small lock: neighbours on the skin.
@@ -23,9 +24,6 @@ const APART: [[f32; 2]; 2] = [[0.05, 0.02], [0.03, 0.012]];
 const STRAY: f32 = 3.5;
 /// Distance \[m\] by which strays stand off at their tips.
 const STRAY_OUT: f32 = 0.006;
-/// Shares of their length between which curls close to large locks, and the pull of these over that of other locks.
-const CURLS_CLOSE: [f32; 2] = [0.06, 0.55];
-const CURLS_HELD: f32 = 1.25;
 /// Share of the strands on the hairline itself that are short, and their lengths \[m\].
 const SHORT: (f32, [f32; 2]) = (0.5, [0.008, 0.035]);
 
@@ -38,7 +36,7 @@ pub(super) struct Shaped {
 /// Shapes strands between guides; `clumps` gives the guide in the middle of each guide's lock.
 pub(super) fn shape(
     settings: &StyleSettings,
-    mannequin: &Mannequin,
+    skin: &Skin,
     guides: &[Strand],
     clumps: &[u32],
     hair: &[Between],
@@ -50,7 +48,7 @@ pub(super) fn shape(
         let middle = &hair[(lock * SMALL_LOCK + SMALL_LOCK / 2).min(hair.len() - 1)];
         let clump = clumps[own.guide];
         let Some(large) = larges.get(&clump) else { unreachable!("every lock has a middle") };
-        One { settings, own, middle, large, closing: &closing, clump, lock, index }.shape(mannequin)
+        One { settings, own, middle, large, closing: &closing, clump, lock, index }.shape(skin)
     });
     shaped.collect()
 }
@@ -72,19 +70,11 @@ fn larges<'a>(guides: &'a [Strand], clumps: &[u32]) -> HashMap<u32, Large<'a>> {
     named.into_iter().map(large).collect()
 }
 
-/// Shares of the pull toward a small and a large lock that points of a strand have reached. Curls close to locks that are
-/// thinner than curls are wide by the middle of their length: wider ones are a bush.
+/// Shares of the pull toward a small and a large lock that points of a strand have reached.
 fn closing(settings: &StyleSettings) -> Vec<[f32; 2]> {
     let last = settings.points() - 1;
-    let large = |share: f32| {
-        if settings.is_curled() {
-            CURLS_HELD * smooth(CURLS_CLOSE[0], CURLS_CLOSE[1], share)
-        } else {
-            math::powf(share, 1.3)
-        }
-    };
     let share = |point: usize| point as f32 / last as f32;
-    (0..=last).map(|point| [math::powf(share(point), 0.7), large(share(point))]).collect()
+    (0..=last).map(|point| [math::powf(share(point), 0.7), closed(settings, share(point))]).collect()
 }
 
 /// A strand while it is shaped.
@@ -101,7 +91,7 @@ struct One<'a> {
 }
 
 impl One<'_> {
-    fn shape(&self, mannequin: &Mannequin) -> Shaped {
+    fn shape(&self, skin: &Skin) -> Shaped {
         let mut random = Random::new(self.settings.seed, 7_000_000_000 + self.index as u64);
         let is_stray = random.unit() < self.settings.strays;
         let [pull, frizz, depth, thick] = std::array::from_fn(|_| random.unit());
@@ -131,7 +121,7 @@ impl One<'_> {
         let mut even: Vec<Vec3> = equal_arcs(&cut(points, kept), last + 1).collect();
         let clearance = CLEARANCE * (0.5 + 0.9 * depth);
         for point in &mut even[1..] {
-            *point = outside(mannequin, *point, clearance);
+            *point = skin.outside(*point, clearance);
         }
         let fine = 0.55 + 0.45 * self.own.density;
         Shaped { points: even, width: WIDTH * (0.8 + 0.4 * thick) * fine }

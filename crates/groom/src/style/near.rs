@@ -1,6 +1,7 @@
 //! Strands of a list whose roots lie near a place.
 
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 use glam::{IVec3, Vec3};
 
@@ -9,10 +10,35 @@ const CELL: f32 = 2.0;
 /// Most rings of cells around a place that are searched: further away lies no root worth to follow.
 const RINGS: i32 = 12;
 
+/// Factor that spreads the bits of a cell.
+const SPREAD: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// A hash of cells: they come from no stranger, and are looked up by the million.
+#[derive(Default)]
+struct OfCell(u64);
+
+impl Hasher for OfCell {
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|byte| self.write_i32(i32::from(*byte)));
+    }
+
+    fn write_i32(&mut self, number: i32) {
+        self.0 = (self.0.rotate_left(21) ^ u64::from(number.cast_unsigned())).wrapping_mul(SPREAD);
+    }
+
+    fn finish(&self) -> u64 {
+        // The table takes the lowest bits first.
+        self.0 ^ (self.0 >> 32)
+    }
+}
+
+/// Places by their cells.
+type Cells = HashMap<IVec3, Vec<u32>, BuildHasherDefault<OfCell>>;
+
 /// Roots sorted into cells.
 pub(super) struct Near {
     side: f32,
-    cells: HashMap<IVec3, Vec<u32>>,
+    cells: Cells,
     places: Vec<Vec3>,
 }
 
@@ -20,7 +46,7 @@ impl Near {
     /// Of places \[m\] on an area \[m^2\].
     pub fn new(places: Vec<Vec3>, area: f32) -> Self {
         let side = CELL * (area / places.len().max(1) as f32).sqrt();
-        let mut cells: HashMap<IVec3, Vec<u32>> = HashMap::new();
+        let mut cells = Cells::default();
         for (index, place) in places.iter().enumerate() {
             cells.entry((*place / side).floor().as_ivec3()).or_default().push(index as u32);
         }

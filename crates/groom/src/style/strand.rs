@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use strandline_base::math;
-use strandline_body::{Mannequin, Root, SignedDistance};
+use strandline_body::{Mannequin, Root};
 
 use super::comb::WHORL;
 use super::{Style, StyleSettings};
@@ -27,18 +27,6 @@ pub struct Strand {
     pub side: f32,
     /// Its points \[m\], evenly spaced.
     pub points: Vec<Vec3>,
-}
-
-/// Moves a point out of the body until it is `clearance` \[m\] from the skin.
-pub fn outside(mannequin: &Mannequin, mut point: Vec3, clearance: f32) -> Vec3 {
-    for _ in 0..8 {
-        let (distance, out) = mannequin.distance_and_gradient(point);
-        if distance >= clearance {
-            break;
-        }
-        point += out * (clearance - distance);
-    }
-    point
 }
 
 /// Draws a guide's root near the parting toward it, so that it is a line and not a lane.
