@@ -44,15 +44,15 @@ impl Head {
 
     /// A head with a number of guides, in pictures of a width and height \[pixel\].
     pub(crate) fn of(strand_count: usize, size: usize) -> Self {
-        Self::without(0, strand_count, size)
+        Self::without(0, strand_count, 16, size)
     }
 
-    /// The same head without the last few of its guides.
-    pub(crate) fn without(count: usize, strand_count: usize, size: usize) -> Self {
+    /// The same head without the last few of its guides, which have so many points.
+    pub(crate) fn without(count: usize, strand_count: usize, points: usize, size: usize) -> Self {
         let groom = StyleSettings { strand_count, ..StyleSettings::new(Style::Long) }.grow().unwrap();
         let groom = groom.kept(|strand| strand < strand_count - count);
         Self {
-            guides: Guides::resample(&groom, 16).unwrap(),
+            guides: Guides::resample(&groom, points).unwrap(),
             mesh: Mannequin::new().mesh(),
             camera: Camera::front(),
             size,

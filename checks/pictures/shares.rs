@@ -19,8 +19,8 @@ law! {
         let lights = Light::studio(Camera::front().target).map(|light| Light { samples: 1, ..light });
         // Of the same roots: other roots alone change the light by 4 %.
         let light = |guides, without| {
-            let head = Head::without(without, guides, 384);
-            let layers = head.lit_by(on, Preset::Blonde, &lights);
+            let head = Head::without(without, guides, on.short(16, 6), 384);
+            let layers = head.lit_by(on, Preset::Blonde, on.short(&lights[..], &lights[..1]));
             mean(&layers, &head.crown(&layers))
         };
         // Of 8,176 strands all are summed, of 8,192 every second; of 16,368 every second, of 16,384 every fourth.
