@@ -127,6 +127,7 @@ pub fn groom(of: &Bound<'_, PyDict>) -> PyResult<Groom> {
         transparencies: attribute::<f32>(of, "transparencies", &[None])?,
         masses: attribute::<f32>(of, "masses", &[None])?,
         velocities: vectors(rows::<3>(of, "velocities")?),
+        numbers: None,
     };
     groom.check_lengths().map_err(|error| errors::refused(py, &error.into()))?;
     Ok(groom)

@@ -368,8 +368,8 @@ class Body(TypedDict, total=False):
 
     up: str
     """The files' axis that points up; "auto" takes y for a glTF, whose face looks along +z, and else the axis that
-    the body shows: the head of a person, or the four feet of an animal. A given axis gives the front too. Allowed:
-    one of auto, y, z, x, -y, -z, -x."""
+    the body shows: the head of a person, the four feet of an animal, or the flat base of a statue. A given axis gives
+    the front too. Allowed: one of auto, y, z, x, -y, -z, -x."""
 
     rotation: Sequence[float]
     """Turns the body of a file: pitch (about x), yaw (about y), roll (about z). Allowed: 3 numbers of -360 to 360

@@ -57,6 +57,9 @@ pub struct Groom {
     pub masses: Option<Vec<f32>>,
     /// Velocities at the beginning \[m/s\], head space, shape `[point]`; without them hair begins at rest.
     pub velocities: Option<Vec<Vec3>>,
+    /// The number of each strand in its file, from 0, where others of the file were left out or strands are of several
+    /// files: shape `[strand]`.
+    pub numbers: Option<Vec<u32>>,
 }
 
 impl Groom {
@@ -76,6 +79,7 @@ impl Groom {
             transparencies: None,
             masses: None,
             velocities: None,
+            numbers: None,
         }
     }
 
@@ -122,6 +126,7 @@ impl Groom {
             ("groom.transparencies", of(self.transparencies.as_ref().map(Vec::len), points)),
             ("groom.masses", of(self.masses.as_ref().map(Vec::len), points)),
             ("groom.velocities", of(self.velocities.as_ref().map(Vec::len), points)),
+            ("groom.numbers", of(self.numbers.as_ref().map(Vec::len), strands)),
         ] {
             if let Some((length, expected)) = lengths.filter(|(length, expected)| length != expected) {
                 let expected = format!("{expected}: {strands} strands have {points} points");

@@ -11,6 +11,24 @@ impl Groom {
         self.select(&strands)
     }
 
+    /// As [`Self::kept`], with the numbers that the strands have in their file.
+    pub(crate) fn left_of_file(mut self, keep: impl Fn(usize) -> bool) -> Self {
+        self.number_strands();
+        self.kept(keep)
+    }
+
+    /// Gives each strand its number in its file, before strands are left out or added.
+    pub fn number_strands(&mut self) {
+        let count = self.strand_count() as u32;
+        self.numbers.get_or_insert_with(|| (0..count).collect());
+    }
+
+    /// The number of a strand in its file, from 0.
+    pub fn number(&self, strand: usize) -> usize {
+        let numbers = self.numbers.as_deref().unwrap_or_default();
+        numbers.get(strand).map_or(strand, |number| *number as usize)
+    }
+
     /// Some strands by their indices, in the order given, with everything that they have.
     pub fn select(&self, strands: &[usize]) -> Self {
         let mut groom = Self::empty(0.0);
@@ -34,6 +52,10 @@ impl Groom {
         groom.transparencies = self.transparencies.as_ref().map(|all| self.per_point(strands, all));
         groom.masses = self.masses.as_ref().map(|all| self.per_point(strands, all));
         groom.velocities = self.velocities.as_ref().map(|all| self.per_point(strands, all));
+        let numbers = self.numbers.as_ref().map(|all| per_strand(strands, all));
+        let is_counted =
+            |all: &Vec<u32>| all.iter().enumerate().all(|(strand, number)| *number as usize == strand);
+        groom.numbers = numbers.filter(|all| !is_counted(all));
         groom
     }
 
@@ -84,6 +106,7 @@ impl Groom {
         join(&mut self.transparencies, other.transparencies);
         join(&mut self.masses, other.masses);
         join(&mut self.velocities, other.velocities);
+        join(&mut self.numbers, other.numbers);
     }
 
     fn joined_widths(&self, other: &Self) -> Widths {

@@ -26,8 +26,8 @@ enum Unlike {
 }
 
 impl Groom {
-    /// Names the few strands that are wholly unlike those beside them, with their number among all strands of the groom:
-    /// far longer, or led against them. Nothing is changed.
+    /// Names the few strands that are wholly unlike those beside them, with their number in their file: far longer, or led
+    /// against them. Nothing is changed.
     pub fn unlike_beside(&self) -> Vec<String> {
         let found = unlike(self);
         let few = (FEW * self.strand_count() as f32).max(1.0);
@@ -35,12 +35,10 @@ impl Groom {
             let mut strands = (0..found.len()).filter(|strand| found[*strand] == Some(kind));
             let first = strands.next()?;
             let count = 1 + strands.count();
-            let (strands, all) = (counted(count, "strand is", "strands are"), self.strand_count());
-            (count as f32 <= few).then(|| {
-                format!(
-                    "{strands} {words}, the first is {first} of the {all} that are kept: left as in the file"
-                )
-            })
+            let strands = counted(count, "strand is", "strands are");
+            let first = self.number(first);
+            (count as f32 <= few)
+                .then(|| format!("{strands} {words}, the first is {first}: left as in the file"))
         };
         let longer = note(Unlike::Longer, "over 5 times as long as those beside");
         longer.into_iter().chain(note(Unlike::Against, "led against all those beside")).collect()
@@ -120,8 +118,7 @@ mod tests {
         .unlike_beside();
         assert_eq!(notes.len(), 2, "{notes:?}");
         assert!(
-            notes[0].starts_with("2 strands are over 5 times as long")
-                && notes[0].contains("first is 411 of the 900")
+            notes[0].starts_with("2 strands are over 5 times as long") && notes[0].contains("first is 411:")
         );
         assert!(notes[1].starts_with("3 strands are led against") && notes[1].contains("first is 100"));
     }

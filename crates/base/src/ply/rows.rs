@@ -3,9 +3,6 @@
 use super::header::{Element, Encoding, Header, Number, Property};
 use super::mismatch::Mismatch;
 
-/// Longest list of a row.
-const MAX_LIST: f64 = 4096.0;
-
 /// One property of all rows.
 #[derive(Default)]
 pub struct Column {
@@ -85,7 +82,8 @@ impl<'a> Rows<'a> {
     /// The rows of the next element; properties that are not among `names` are skipped.
     pub fn read(&mut self, element: &Element, names: &[&str]) -> Result<Table, Mismatch> {
         // The least size of a row: no memory is taken that the file cannot fill.
-        let least = |number: Number| if self.encoding == Encoding::Text { 1 } else { number.size() as u64 };
+        let is_text = self.encoding == Encoding::Text;
+        let least = |number: Number| if is_text { 1 } else { number.size() as u64 };
         let row: u64 =
             element.properties.iter().map(|property| least(property.length.unwrap_or(property.number))).sum();
         let needed = element.count.checked_mul(row.max(1));
@@ -111,7 +109,7 @@ impl<'a> Rows<'a> {
             for (property, (is_kept, column)) in element.properties.iter().zip(&mut columns) {
                 let count = match property.length {
                     None => 1,
-                    Some(length) => self.length(length)?,
+                    Some(length) => self.length(length, least(property.number))?,
                 };
                 for _ in 0..count {
                     let number = self.number(property.number)?;
@@ -128,12 +126,15 @@ impl<'a> Rows<'a> {
         Ok(Table { rows, columns: columns.collect() })
     }
 
-    fn length(&mut self, length: Number) -> Result<usize, Mismatch> {
+    /// The length of a list of numbers of some bytes each at least, which the rest of the file can hold.
+    fn length(&mut self, length: Number, least: u64) -> Result<usize, Mismatch> {
         let count = self.number(length)?;
-        if (0.0..=MAX_LIST).contains(&count) && count.fract() == 0.0 {
+        let most = self.rest.len() as u64 / least;
+        if (0.0..=most as f64).contains(&count) && count.fract() == 0.0 {
             return Ok(count as usize);
         }
-        Err(Mismatch::new(format!("a list of {count} numbers"), format!("0 to {MAX_LIST}")))
+        let expected = format!("0 to {most}, which the rest of the file can hold");
+        Err(Mismatch::new(format!("a list of {count} numbers"), expected))
     }
 
     fn number(&mut self, number: Number) -> Result<f64, Mismatch> {

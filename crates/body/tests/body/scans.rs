@@ -93,6 +93,32 @@ fn ply_meshes_are_read_in_every_encoding() {
     check_cube(&load_bytes("cube.ply", format!("\u{FEFF}{windows}").as_bytes()).unwrap(), Vec3::ZERO, 1.0);
 }
 
+/// The cube as one list of six strips, with corners before them that make no triangles.
+fn strips(idle: usize) -> String {
+    let (corners, quads) = cube();
+    let corners: String = corners.iter().map(|[x, y, z]| format!("{x} {y} {z}\n")).collect();
+    let list: String = quads.iter().map(|[a, b, c, d]| format!(" {a} {b} {d} {c} -1")).collect();
+    format!(
+        "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n\
+         element tristrips 1\nproperty list int int vertex_indices\nend_header\n{corners}{}{}{list}\n",
+        idle + 30,
+        " 0".repeat(idle)
+    )
+}
+
+#[test]
+fn ply_strips_of_triangles_are_read() {
+    for idle in [0, 2, 5000] {
+        let mesh = load_bytes("cube.ply", strips(idle).as_bytes());
+        // An odd strip begins the other way round.
+        check_cube(&mesh.unwrap(), Vec3::ZERO, 1.0);
+    }
+    let text = strips(0);
+    let with = |from: &str, to: &str| refused("cube.ply", text.replace(from, to).as_bytes());
+    assert!(with(" -1 ", " 8 ").contains("a face with the vertex 8 of 8"));
+    assert!(with("\n30 ", "\n3000000000 ").contains("a list of 3000000000 numbers, expected 0 to"));
+}
+
 #[test]
 fn ply_mistakes_are_named() {
     let text = String::from_utf8(ply("ascii", "vertex_indices")).unwrap();

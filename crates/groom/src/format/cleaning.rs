@@ -43,8 +43,9 @@ impl Groom {
     /// Leaves out strands far from all others and dummy points at the origin, in any units; notes on both.
     pub fn leave_out_strays(&mut self) -> Vec<String> {
         let strays = Strays::of(self);
-        let notes = strays.notes("left out");
+        let notes = strays.notes(self, "left out");
         if !notes.is_empty() {
+            self.number_strands();
             *self = strays.left_out_of(self);
         }
         notes
@@ -52,7 +53,7 @@ impl Groom {
 
     /// Names strands far from all others and dummy points at the origin, each followed by `done`.
     pub(crate) fn strays(&self, done: &str) -> Vec<String> {
-        Strays::of(self).notes(done)
+        Strays::of(self).notes(self, done)
     }
 
     /// The box around all points but those of strays \[units of the groom\].
@@ -70,6 +71,7 @@ impl Groom {
             notes.push(format!("{}: left out", tiny_note(&tiny)));
             let mut is_tiny = vec![false; self.strand_count()];
             tiny.iter().for_each(|strand| is_tiny[*strand] = true);
+            self.number_strands();
             *self = self.kept(|strand| !is_tiny[strand]);
         }
         if let Some((widths, note)) = widths(self) {
@@ -143,15 +145,20 @@ impl Strays {
         self.strands.is_empty() && self.dummies.is_empty()
     }
 
-    fn notes(&self, done: &str) -> Vec<String> {
+    /// Notes on both kinds, with numbers of the file of the groom.
+    fn notes(&self, groom: &Groom, done: &str) -> Vec<String> {
         let mut notes = Vec::new();
-        if let Some(first) = self.strands.first() {
+        if let Some(first) = self.strands.first().map(|strand| groom.number(*strand)) {
             let strands = counted(self.strands.len(), "strand reaches", "strands reach");
             notes.push(format!("{strands} far from all others, the first is {first}: {done}"));
         }
         if let Some(first) = self.dummies.first() {
+            let strand = groom.starts.partition_point(|start| *start as usize <= *first) - 1;
+            let (point, strand) = (first - groom.range(strand).start, groom.number(strand));
             let points = counted(self.dummies.len(), "dummy point lies", "dummy points lie");
-            notes.push(format!("{points} at the origin, the first is point {first}: {done}"));
+            notes.push(format!(
+                "{points} at the origin, the first is point {point} of strand {strand}: {done}"
+            ));
         }
         notes
     }

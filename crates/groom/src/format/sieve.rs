@@ -47,7 +47,7 @@ pub fn sieve(groom: Groom, strict: bool, problems: &mut Vec<String>) -> Result<G
     if faults.iter().all(Option::is_none) {
         Ok(groom)
     } else {
-        Ok(groom.kept(|strand| faults[strand].is_none()))
+        Ok(groom.left_of_file(|strand| faults[strand].is_none()))
     }
 }
 

@@ -22,7 +22,7 @@ use crate::{
 const DEPTHS: std::ops::RangeInclusive<f32> = 0.7..=1.8;
 /// Width, height and depth of the roots on a head over those of its skull.
 const OF_SKULL: Vec3 = Vec3::new(1.0, 0.97, 0.94);
-/// Evidence against axes that no standard has, and against hair that looks another way than its standard says.
+/// Evidence against axes that no standard has, and against -z up and hair that looks another way than its standard says.
 const STRANGE: f32 = 1.5;
 const ROUND: f32 = 0.7;
 /// Difference of a scale from 1 that is none.
@@ -76,7 +76,7 @@ fn against(turn: Quat) -> f32 {
     let place = UPS.iter().flat_map(|up| turns_of(*up)).position(|one| one.angle_between(turn) < 0.01);
     match place.map(|place| (place / 4, place % 4)) {
         Some((0..3, 0)) => 0.0,
-        Some((0..3, 1)) => ROUND,
+        Some((0..3, 1) | (3, 0)) => ROUND,
         _ => STRANGE,
     }
 }

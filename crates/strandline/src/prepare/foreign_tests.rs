@@ -52,6 +52,22 @@ fn hair_of_another_head_is_fitted_to_this_one() {
 }
 
 #[test]
+fn an_afro_of_another_head_stands_up_from_any_axes() {
+    let mut mesh = crate::body::Mannequin::new().mesh();
+    place_mesh(&mut mesh, Placing { scale: 1.15, turn: Quat::IDENTITY }, Vec3::ZERO, Vec3::Y * -0.4);
+    let grown = StyleSettings { strand_count: 400, ..StyleSettings::new(Style::Afro) }.grow().unwrap();
+    for up in UPS {
+        let mut groom = grown.clone();
+        groom.transform(1.0, up.rotation().inverse(), Vec3::X);
+        let found = placed(&scene(), &groom, &mesh);
+        assert!(found.is_foreign, "{up:?}: {:?}", found.notes);
+        let turn = found.groom.turn;
+        // A refusal names the likeliest axes first.
+        assert!(turn.angle_between(up.rotation()) < 0.01, "{up:?}: {:?} {:?}", found.notes, found.refusal);
+    }
+}
+
+#[test]
 fn hair_of_this_head_stays_and_so_does_what_a_scene_places() {
     let (mut groom, mesh) = pair(1.0, 0.0, 0.0);
     let mut moved = scene();

@@ -29,6 +29,10 @@ const NOSES: f32 = 0.04;
 const FEET: f32 = 0.06;
 const COVERED: f32 = 0.35;
 const BETWEEN: f32 = 0.12;
+/// Depth of a flat base over the height of what stands on it, and the share of the length and width of the whole that it
+/// covers at least.
+const BASE: f32 = 0.02;
+const BASE_COVERS: f32 = 0.15;
 
 /// Axes that may point up, likelier ones first.
 pub(super) const UPS: [Up; 6] = [Up::Y, Up::Z, Up::MinusY, Up::MinusZ, Up::X, Up::MinusX];
@@ -74,6 +78,7 @@ pub(super) fn pose(mesh: &Mesh, ups: &[Up]) -> Pose {
     }
     let standing = |seen: &&Seen| stands(&places, seen.up.rotation());
     let found = if standing(&first) { Some(first) } else { seen.iter().find(standing) };
+    let found = found.or_else(|| seen.iter().find(|seen| has_base(mesh, seen.up.rotation())));
     let up = found.unwrap_or(first).up;
     Pose { turn: up.rotation(), is_person: false, shows_front: false, up, is_sure: found.is_some() }
 }
@@ -166,10 +171,70 @@ fn stands(places: &[Vec3], turn: Quat) -> bool {
     covered.x > COVERED && covered.z > COVERED && between(0) && between(2)
 }
 
+/// True where a bust stands on a flat base once it is turned: what is lowest faces down, and is less wide than the whole is
+/// high, which the back of a relief is not.
+fn has_base(mesh: &Mesh, turn: Quat) -> bool {
+    let turned: Vec<Vec3> = mesh.positions.iter().map(|place| turn * *place).collect();
+    let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    let (low, high) = turned.iter().fold(start, |(low, high), place| (low.min(*place), high.max(*place)));
+    let size = high - low;
+    let base: f32 = mesh
+        .triangles
+        .iter()
+        .map(|corners| corners.map(|corner| turned[corner as usize]))
+        .filter(|corners| corners.iter().all(|corner| corner.y < low.y + BASE * size.y))
+        .map(|[one, two, three]| 0.5 * (two - one).cross(three - one).y.abs())
+        .sum();
+    size.y > size.x.max(size.z) && base > BASE_COVERS * size.x * size.z
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::body::Mannequin;
+
+    /// A statue of a person that has no face: a ball on a column on a flat foot, or a relief with a flat back.
+    fn statue(foot: f32, height: f32) -> Mesh {
+        let mut mesh = Mesh::default();
+        let rings = [
+            (0.0, 0.0),
+            (0.0, foot),
+            (0.1, foot),
+            (0.15, 0.1),
+            (0.5, 0.12),
+            (0.7, 0.3),
+            (0.9, 0.25),
+            (1.0, 0.0),
+        ];
+        for (up, radius) in rings {
+            for side in 0..24 {
+                let angle = PI * side as f32 / 12.0;
+                let wide = Vec2::new(1.0, 0.6) * Vec2::new(math::cos(angle), math::sin(angle));
+                mesh.positions.push(Vec3::new(radius * wide.x, height * up, radius * wide.y));
+            }
+        }
+        for ring in 0..rings.len() as u32 - 1 {
+            for side in 0..24 {
+                let [one, two] = [side, (side + 1) % 24].map(|side| 24 * ring + side);
+                mesh.triangles.extend([[one, one + 24, two], [two, one + 24, two + 24]]);
+            }
+        }
+        mesh
+    }
+
+    #[test]
+    fn a_statue_stands_on_its_foot_and_a_relief_as_in_its_file() {
+        for up in UPS {
+            let mut mesh = statue(0.35, 1.2);
+            mesh.positions.iter_mut().for_each(|place| *place = up.rotation().inverse() * *place);
+            let found = pose(&mesh, &UPS);
+            assert!(found.up == up && !found.is_person && !found.shows_front, "{up:?}: {found:?}");
+            assert!(found.is_sure);
+            let mut relief = statue(0.8, 0.3);
+            relief.positions.iter_mut().for_each(|place| *place = up.rotation().inverse() * *place);
+            assert!(!pose(&relief, &UPS).is_sure, "{up:?}");
+        }
+    }
 
     #[test]
     fn a_head_in_any_axes_stands_up_and_looks_along_z() {

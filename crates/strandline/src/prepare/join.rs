@@ -132,6 +132,9 @@ pub(super) fn add_grooms(
                 notes.push(format!("{} of files that are brought together are left out", lost.name()));
             }
         }
+        // Notes give the number that a strand has in its file.
+        groom.number_strands();
+        further.number_strands();
         groom.append(further);
     }
     Ok(notes)

@@ -12,6 +12,7 @@ mod guess;
 mod guides;
 mod head;
 mod join;
+mod key_units;
 mod loading;
 pub(crate) mod looks;
 mod map;
@@ -191,6 +192,7 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
             "look.hair_count x look.width_scale would take long and hide all else: strands cover as much as {fewer:.0} hairs"
         ));
     }
+    notes.extend(key_units::notes(&scene));
     let vertices = mesh.as_ref().map_or(0, |mesh| mesh.positions.len());
     let load = |file: &std::path::PathBuf| HairPose::load(&scene.path(file), shape, vertices);
     let pose = scene.groom.pose.as_ref().map(load).transpose()?;

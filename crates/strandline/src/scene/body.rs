@@ -98,7 +98,8 @@ settings! {
         /// large as a doll to a bear.
         scale: Scale = Scale::default(), in [1e-6, 1e6] "m";
         /// The files' axis that points up; "auto" takes y for a glTF, whose face looks along +z, and else the axis that
-        /// the body shows: the head of a person, or the four feet of an animal. A given axis gives the front too.
+        /// the body shows: the head of a person, the four feet of an animal, or the flat base of a statue. A given axis gives
+        /// the front too.
         up: Up = Up::default();
         /// Turns the body of a file: pitch (about x), yaw (about y), roll (about z).
         rotation: Vec3 = Vec3::ZERO, in [-360.0, 360.0] "degrees", slider [-180.0, 180.0];

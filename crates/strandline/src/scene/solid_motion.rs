@@ -71,7 +71,7 @@ impl SolidMotion {
 }
 
 impl ColliderSection {
-    fn keyframes(&self) -> &[KeyframeSection] {
+    pub(crate) fn keyframes(&self) -> &[KeyframeSection] {
         match self {
             Self::Sphere(sphere) => &sphere.keyframes,
             Self::Capsule(capsule) => &capsule.keyframes,

@@ -70,13 +70,55 @@ fn dummy_points_at_the_origin_are_left_out() {
         groom.points[point] = Vec3::ZERO;
     }
     let notes = groom.leave_out_strays();
-    assert_eq!(notes, ["18 dummy points lie at the origin, the first is point 62: left out"]);
+    assert_eq!(notes, ["18 dummy points lie at the origin, the first is point 14 of strand 3: left out"]);
     assert_eq!(groom.strand_count(), 299);
     assert_eq!([3, 4, 7].map(|strand| groom.strand(strand).len()), [14, 16, 15]);
     let color =
         |strand: usize, point: usize| groom.colors.as_ref().unwrap()[groom.range(strand).start + point][0];
     assert_eq!([color(3, 13), color(4, 0), color(5, 0)], [61.0, 64.0, 96.0], "attributes stay with points");
     assert_eq!(groom.colors.as_ref().unwrap().len(), groom.points.len());
+}
+
+#[test]
+fn notes_give_numbers_of_the_file_after_strands_are_left_out() {
+    // A square of strands that hang, one of which is led against the others.
+    let mut lawn = Groom::empty(8e-5);
+    for strand in 0..900 {
+        let root = Vec3::new(0.005 * (strand / 30) as f32, 1.0, 0.005 * (strand % 30) as f32);
+        let way = Vec3::new(0.001 * (strand % 7) as f32, if strand == 500 { 0.04 } else { -0.04 }, 0.0);
+        lawn.push((0..6).map(|point| root + way * point as f32));
+    }
+    for strand in [2, 7] {
+        let start = lawn.range(strand).start;
+        lawn.points[start] = Vec3::NAN;
+    }
+    let [far, tiny] = [20, 31].map(|strand| lawn.range(strand));
+    lawn.points[far].iter_mut().for_each(|point| *point += Vec3::X * 99.0);
+    let root = lawn.points[tiny.start];
+    lawn.points[tiny].iter_mut().enumerate().for_each(|(point, place)| *place = root + 1e-5 * point as f32);
+    let last = lawn.range(600).end - 1;
+    lawn.points[last] = Vec3::ZERO;
+    let mut problems = Vec::new();
+    let mut groom = crate::format::sieve::sieve(lawn, false, &mut problems).unwrap();
+    assert!(problems[0].ends_with("the first are [2, 7]"), "{problems:?}");
+    assert_eq!(
+        groom.leave_out_strays(),
+        [
+            "1 strand reaches far from all others, the first is 20: left out",
+            "1 dummy point lies at the origin, the first is point 5 of strand 600: left out"
+        ]
+    );
+    assert_eq!(groom.mend(), ["1 strand is shorter than 1 mm and than 2 % of the median: left out"]);
+    let notes = groom.unlike_beside();
+    assert_eq!(notes, ["1 strand is led against all those beside, the first is 500: left as in the file"]);
+    // Strands of further files have their own numbers.
+    groom.append({
+        let mut other = groom.clone();
+        other.numbers = None;
+        other.number_strands();
+        other
+    });
+    assert_eq!([groom.number(0), groom.number(895), groom.number(896)], [0, 899, 0]);
 }
 
 #[test]

@@ -1,0 +1,188 @@
+//! Notes on keyframes whose values are probably in other units than those of their settings.
+
+use glam::Vec3;
+
+use crate::{
+    Scene,
+    scene::{KeyframeSection, MotionName},
+};
+
+/// Speed \[m/s\] beyond which few heads move from key to key by more than a way \[m\], and way from the first key beyond
+/// which few films go.
+const FASTEST: f64 = 8.0;
+const LEAST: f32 = 1.0;
+const FARTHEST: f32 = 20.0;
+/// Largest angle \[radian\] that a person writes for a turn, and the largest \[degrees\] that nobody would see.
+const WHOLE_TURN: f32 = 7.0;
+const UNSEEN: f32 = 1.6;
+/// Step \[degrees\] of which small angles are that a person means as such.
+const STEP: f32 = 0.5;
+
+/// Values of a key: the time \[s\], the displacement \[m\], the angles \[degrees\], and whether it is a jump.
+struct Values {
+    time: f64,
+    translation: Vec3,
+    angles: Vec<f32>,
+    is_cut: bool,
+}
+
+/// Names keys that are probably in centimetres or radians: those of the head, of solids and of the camera.
+pub(super) fn notes(scene: &Scene) -> Vec<String> {
+    let mut notes = Vec::new();
+    if scene.motion.name == MotionName::Keyframes {
+        notes.extend(of_keys("motion.keyframes", "the head", &poses(&scene.motion.keyframes)));
+    }
+    for (index, solid) in scene.colliders.iter().enumerate() {
+        let list = format!("colliders[{index}].keyframes");
+        notes.extend(of_keys(&list, "the solid", &poses(solid.keyframes())));
+    }
+    let views = scene.camera.keyframes.iter().map(|key| Values {
+        time: key.time,
+        translation: key.translation,
+        // A window keeps views to any part of a degree.
+        angles: Vec::new(),
+        is_cut: key.cut,
+    });
+    notes.extend(of_keys("camera.keyframes", "the camera", &views.collect::<Vec<_>>()));
+    notes
+}
+
+fn poses(keys: &[KeyframeSection]) -> Vec<Values> {
+    let values = |key: &KeyframeSection| Values {
+        time: key.time,
+        translation: key.translation,
+        angles: key.rotation.to_array().into(),
+        is_cut: key.cut,
+    };
+    keys.iter().map(values).collect()
+}
+
+/// Notes on the keys of a list, given the name of what they move.
+fn of_keys(list: &str, moved: &str, keys: &[Values]) -> Vec<String> {
+    let translation = far_key(keys).map(|(index, way, time)| {
+        format!(
+            "{list}[{index}].translation moves {moved} by {way} m in {time} s: translations are in metres, and {way} cm \
+             would be {}",
+            way / 100.0
+        )
+    });
+    let rotation = largest_angle(keys).map(|(index, angle)| {
+        format!(
+            "{list}[{index}].rotation has {angle} degrees, the most of all keys: angles are in degrees, and {angle} radians \
+             would be {:.0}",
+            angle.to_degrees()
+        )
+    });
+    translation.into_iter().chain(rotation).collect()
+}
+
+/// The first key to which the way is too long or too fast for metres: its index, the way \[m\] and its time \[s\].
+fn far_key(keys: &[Values]) -> Option<(usize, f32, f64)> {
+    let mut first = 0;
+    for index in 1..keys.len() {
+        if keys[index].is_cut {
+            first = index;
+            continue;
+        }
+        let way = |from: usize| {
+            (keys[index].translation.distance(keys[from].translation), keys[index].time - keys[from].time)
+        };
+        let (step, time) = way(index - 1);
+        if step > LEAST && f64::from(step) > FASTEST * time {
+            return Some((index, step, time));
+        }
+        let (all, time) = way(first);
+        if all > FARTHEST {
+            return Some((index, all, time));
+        }
+    }
+    None
+}
+
+/// The largest angle \[degrees\] and the index of its key, where all angles are those of radians.
+fn largest_angle(keys: &[Values]) -> Option<(usize, f32)> {
+    let all = || keys.iter().flat_map(|key| &key.angles);
+    let of_key = |key: &Values| key.angles.iter().fold(0.0_f32, |most, angle| most.max(angle.abs()));
+    let (index, most) = keys.iter().map(of_key).enumerate().max_by(|one, two| one.1.total_cmp(&two.1))?;
+    let is_step = |angle: &f32| (angle / STEP - (angle / STEP).round()).abs() < 1e-3;
+    let is_small = most > 0.0 && most < WHOLE_TURN && (most <= UNSEEN || !all().all(is_step));
+    is_small.then_some((index, most))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{CameraKeyframe, ColliderSection, SphereSection};
+
+    fn key(time: f64, translation: Vec3, rotation: Vec3) -> KeyframeSection {
+        KeyframeSection { time, translation, rotation, ..KeyframeSection::default() }
+    }
+
+    fn notes_on(keys: Vec<KeyframeSection>) -> Vec<String> {
+        let mut scene = Scene::default();
+        (scene.motion.name, scene.motion.keyframes) = (MotionName::Keyframes, keys);
+        notes(&scene)
+    }
+
+    #[test]
+    fn keys_in_centimetres_are_named() {
+        let moved = |ways: &[f32]| {
+            let keys = ways.iter().enumerate();
+            notes_on(keys.map(|(index, way)| key(0.5 * index as f64, way * Vec3::X, Vec3::ZERO)).collect())
+        };
+        let note = "motion.keyframes[2].translation moves the head by 30 m in 0.5 s: translations are in metres, and 30 cm \
+                    would be 0.3";
+        assert_eq!(moved(&[0.0, 2.0, 32.0, 4.0]), [note], "the first one that is far");
+        // A person who runs, and one who runs far.
+        assert_eq!(moved(&[0.0, 3.0, 6.0, 9.0]), Vec::<String>::new());
+        let far: Vec<f32> = (0..9).map(|index| 3.0 * index as f32).collect();
+        assert!(
+            moved(&far)[0].starts_with("motion.keyframes[7].translation moves the head by 21 m in 3.5 s")
+        );
+        let cut = KeyframeSection { cut: true, ..key(1.0, Vec3::X * 500.0, Vec3::ZERO) };
+        assert_eq!(notes_on(vec![key(0.0, Vec3::ZERO, Vec3::ZERO), cut]), Vec::<String>::new(), "a jump");
+        let shaken = vec![key(0.0, Vec3::ZERO, Vec3::ZERO), key(0.01, 0.1 * Vec3::X, Vec3::ZERO)];
+        assert_eq!(notes_on(shaken), Vec::<String>::new());
+    }
+
+    #[test]
+    fn keys_in_radians_are_named() {
+        let turned = |angles: &[f32]| {
+            let keys = angles.iter().enumerate();
+            notes_on(keys.map(|(index, angle)| key(index as f64, Vec3::ZERO, angle * Vec3::Y)).collect())
+        };
+        let note = "motion.keyframes[1].rotation has 1.57 degrees, the most of all keys: angles are in degrees, and 1.57 radians \
+                    would be 90";
+        assert_eq!(turned(&[0.0, -1.57, 0.5]), [note]);
+        assert_eq!(turned(&[0.0, 0.35, 6.3]).len(), 1);
+        assert_eq!(turned(&[0.0, 0.5, 1.0]).len(), 1, "nobody would see it");
+        for angles in [&[0.0, 0.0][..], &[0.0, 1.57, 40.0], &[3.0, -3.0, 1.5], &[0.0, 720.0]] {
+            assert_eq!(turned(angles), Vec::<String>::new(), "{angles:?}");
+        }
+    }
+
+    #[test]
+    fn keys_of_solids_and_cameras_are_named_and_unused_ones_are_not() {
+        let keys = vec![key(0.0, Vec3::ZERO, Vec3::ZERO), key(1.0, 15.0 * Vec3::Z, 3.3 * Vec3::X)];
+        let mut scene = Scene::default();
+        scene.motion.keyframes.clone_from(&keys);
+        assert_eq!(notes(&scene), Vec::<String>::new(), "the head shakes");
+        scene.colliders =
+            vec![ColliderSection::Sphere(SphereSection { keyframes: keys, ..SphereSection::default() })];
+        let view = |time: f64, x: f32| CameraKeyframe {
+            time,
+            translation: x * Vec3::X,
+            turn: 0.3,
+            ..CameraKeyframe::default()
+        };
+        scene.camera.keyframes = vec![view(0.0, 0.0), view(1.0, 50.0)];
+        let found = notes(&scene);
+        assert!(found[0].starts_with("colliders[0].keyframes[1].translation moves the solid by 15 m in 1 s"));
+        assert!(found[1].starts_with("colliders[0].keyframes[1].rotation has 3.3 degrees"), "{found:?}");
+        assert!(
+            found[2].starts_with("camera.keyframes[1].translation moves the camera by 50 m"),
+            "{found:?}"
+        );
+        assert_eq!(found.len(), 3, "{found:?}");
+    }
+}
