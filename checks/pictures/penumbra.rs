@@ -309,7 +309,7 @@ fn tint(on: &On, color: Vec3) -> [f32; 2] {
         groom.push([middle - Vec3::Z * 0.1, middle + Vec3::Z * 0.1]);
     }
     let guides = Guides::resample(&groom, 8).unwrap();
-    // What goes from hair to hair tints nothing, and takes a software adapter long.
+    // Light between hairs tints nothing, and takes a software adapter long.
     let common = Chiang::default();
     let (cells, scatterings) = (on.short(common.cells, 16), on.short(common.scatterings, 4));
     let chiang = Chiang { pigment: Pigment::Color, cells, scatterings, ..common };
