@@ -29,12 +29,12 @@ fn lines(file: impl Read) -> impl Iterator<Item = Vec<u8>> {
     lines.map(|line| line.strip_suffix(b"\r").map_or(line.clone(), <[u8]>::to_vec))
 }
 
-/// True for a .ply whose header counts faces.
+/// True for a .ply whose header counts faces, or strips of triangles.
 fn has_faces(file: impl Read) -> bool {
     let mut header = lines(file).take_while(|line| line != b"end_header");
     header.any(|line| {
         let words: Vec<&[u8]> = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).collect();
-        matches!(words[..], [b"element", b"face", count] if count.iter().any(|digit| *digit != b'0'))
+        matches!(words[..], [b"element", b"face" | b"tristrips", count] if count.iter().any(|digit| *digit != b'0'))
     })
 }
 

@@ -101,7 +101,8 @@ fn together(scene: &Scene, strands: Strands, Body { mesh, shown }: Body) -> Plac
     let Shown { mut placing, pose, mut strange, confidence: sure, .. } = *shown;
     let (hair, sample) = (Hair::new(grooms), Sample::new(grooms, mesh));
     let mut other = None;
-    let shown_up = if !pose.is_sure && scene.groom.up == Up::Auto { shown_up(&sample) } else { None };
+    let is_open = !pose.is_sure || pose.has_base;
+    let shown_up = if is_open && scene.groom.up == Up::Auto { shown_up(&sample) } else { None };
     if let Some(up) = shown_up {
         placing.turn = upright(up);
         other = Some(Head::new(scene, mesh, placing, pose));
@@ -109,7 +110,7 @@ fn together(scene: &Scene, strands: Strands, Body { mesh, shown }: Body) -> Plac
     let (body, head) = (placing, other.as_ref().unwrap_or(&shown.head));
     let search = Search { scene, hair: &hair, is_defined, head };
     let mut placings = found(&search, grooms, Placings { body, ..Placings::new(sure) });
-    let is_faceless = pose.is_person == pose.is_sure && !pose.shows_front;
+    let is_faceless = (pose.is_person == pose.is_sure || pose.has_base) && !pose.shows_front;
     if placings.groom.turn == body.turn && is_faceless && search.may_turn_both() {
         let turn = sample.to_front(&placings.groom, &body);
         let turned = |placing: Placing| Placing { turn: turn * placing.turn, ..placing };

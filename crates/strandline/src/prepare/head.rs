@@ -50,6 +50,8 @@ pub(super) struct Pose {
     pub up: Up,
     /// True where its shape shows that axis.
     pub is_sure: bool,
+    /// True where it shows it by a flat base alone: hair may know better, and knows the front.
+    pub has_base: bool,
 }
 
 /// The rotations of a file whose given axis points up, the likeliest first: as [`Up`] has its face, turned round, to
@@ -78,9 +80,11 @@ pub(super) fn pose(mesh: &Mesh, ups: &[Up]) -> Pose {
     }
     let standing = |seen: &&Seen| stands(&places, seen.up.rotation());
     let found = if standing(&first) { Some(first) } else { seen.iter().find(standing) };
-    let found = found.or_else(|| seen.iter().find(|seen| has_base(mesh, seen.up.rotation())));
-    let up = found.unwrap_or(first).up;
-    Pose { turn: up.rotation(), is_person: false, shows_front: false, up, is_sure: found.is_some() }
+    let based = || seen.iter().find(|seen| has_base(mesh, seen.up.rotation()));
+    let based = if found.is_none() { based() } else { None };
+    let (is_sure, has_base) = (found.or(based).is_some(), based.is_some());
+    let up = found.or(based).unwrap_or(first).up;
+    Pose { turn: up.rotation(), is_person: false, shows_front: false, up, is_sure, has_base }
 }
 
 /// A body with an axis up.
@@ -117,7 +121,7 @@ impl Seen {
         let shows_front = decides.abs() > shows;
         let front = first + usize::from(shows_front && decides < 0.0);
         let turn = turns_of(self.up)[front];
-        Pose { turn, is_person: true, shows_front, up: self.up, is_sure: true }
+        Pose { turn, is_person: true, shows_front, up: self.up, is_sure: true, has_base: false }
     }
 }
 
@@ -171,8 +175,8 @@ fn stands(places: &[Vec3], turn: Quat) -> bool {
     covered.x > COVERED && covered.z > COVERED && between(0) && between(2)
 }
 
-/// True where a bust stands on a flat base once it is turned: what is lowest faces down, and is less wide than the whole is
-/// high, which the back of a relief is not.
+/// True where a bust stands on a flat base once it is turned: what is lowest lies flat, and is less wide than the whole is
+/// high, which the back of a relief is not. Faces count whichever way they wind.
 fn has_base(mesh: &Mesh, turn: Quat) -> bool {
     let turned: Vec<Vec3> = mesh.positions.iter().map(|place| turn * *place).collect();
     let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);

@@ -7,16 +7,16 @@ use crate::{
     scene::{KeyframeSection, MotionName},
 };
 
-/// Speed \[m/s\] beyond which few heads move from key to key by more than a way \[m\], and way from the first key beyond
-/// which few films go.
-const FASTEST: f64 = 8.0;
+/// Speeds \[m/s\] of a head, and of a solid or a camera, that few films have between two keys more than a way \[m\] apart: a
+/// rider is slower than the first.
+const OF_HEADS: f64 = 25.0;
+const OF_OTHERS: f64 = 45.0;
 const LEAST: f32 = 1.0;
-const FARTHEST: f32 = 20.0;
-/// Largest angle \[radian\] that a person writes for a turn, and the largest \[degrees\] that nobody would see.
+/// Largest angle \[radian\] that a person writes for a turn.
 const WHOLE_TURN: f32 = 7.0;
-const UNSEEN: f32 = 1.6;
-/// Step \[degrees\] of which small angles are that a person means as such.
-const STEP: f32 = 0.5;
+/// Part \[radian\] of a turn that a person means, 15 degrees, and how near \[radian\] a rounded one is to whole numbers of it.
+const PART: f32 = std::f32::consts::PI / 12.0;
+const ROUNDED: f32 = 3e-3;
 
 /// Values of a key: the time \[s\], the displacement \[m\], the angles \[degrees\], and whether it is a jump.
 struct Values {
@@ -30,11 +30,11 @@ struct Values {
 pub(super) fn notes(scene: &Scene) -> Vec<String> {
     let mut notes = Vec::new();
     if scene.motion.name == MotionName::Keyframes {
-        notes.extend(of_keys("motion.keyframes", "the head", &poses(&scene.motion.keyframes)));
+        notes.extend(of_keys("motion.keyframes", ("the head", OF_HEADS), &poses(&scene.motion.keyframes)));
     }
     for (index, solid) in scene.colliders.iter().enumerate() {
         let list = format!("colliders[{index}].keyframes");
-        notes.extend(of_keys(&list, "the solid", &poses(solid.keyframes())));
+        notes.extend(of_keys(&list, ("the solid", OF_OTHERS), &poses(solid.keyframes())));
     }
     let views = scene.camera.keyframes.iter().map(|key| Values {
         time: key.time,
@@ -43,7 +43,7 @@ pub(super) fn notes(scene: &Scene) -> Vec<String> {
         angles: Vec::new(),
         is_cut: key.cut,
     });
-    notes.extend(of_keys("camera.keyframes", "the camera", &views.collect::<Vec<_>>()));
+    notes.extend(of_keys("camera.keyframes", ("the camera", OF_OTHERS), &views.collect::<Vec<_>>()));
     notes
 }
 
@@ -57,9 +57,10 @@ fn poses(keys: &[KeyframeSection]) -> Vec<Values> {
     keys.iter().map(values).collect()
 }
 
-/// Notes on the keys of a list, given the name of what they move.
-fn of_keys(list: &str, moved: &str, keys: &[Values]) -> Vec<String> {
-    let translation = far_key(keys).map(|(index, way, time)| {
+/// Notes on the keys of a list, given the name of what they move and how fast it may be \[m/s\].
+fn of_keys(list: &str, (moved, fastest): (&str, f64), keys: &[Values]) -> Vec<String> {
+    let translation = far_key(keys, fastest).map(|(index, way, time)| {
+        let (way, time) = ((1e3 * way).round() / 1e3, (1e3 * time).round() / 1e3);
         format!(
             "{list}[{index}].translation moves {moved} by {way} m in {time} s: translations are in metres, and {way} cm \
              would be {}",
@@ -76,37 +77,23 @@ fn of_keys(list: &str, moved: &str, keys: &[Values]) -> Vec<String> {
     translation.into_iter().chain(rotation).collect()
 }
 
-/// The first key to which the way is too long or too fast for metres: its index, the way \[m\] and its time \[s\].
-fn far_key(keys: &[Values]) -> Option<(usize, f32, f64)> {
-    let mut first = 0;
-    for index in 1..keys.len() {
-        if keys[index].is_cut {
-            first = index;
-            continue;
-        }
-        let way = |from: usize| {
-            (keys[index].translation.distance(keys[from].translation), keys[index].time - keys[from].time)
-        };
-        let (step, time) = way(index - 1);
-        if step > LEAST && f64::from(step) > FASTEST * time {
-            return Some((index, step, time));
-        }
-        let (all, time) = way(first);
-        if all > FARTHEST {
-            return Some((index, all, time));
-        }
-    }
-    None
+/// The first key to which the way from the one before is too fast for metres: its index, the way \[m\] and its time \[s\].
+fn far_key(keys: &[Values], fastest: f64) -> Option<(usize, f32, f64)> {
+    let pairs = keys.windows(2).enumerate().filter(|(_, pair)| !pair[1].is_cut);
+    let ways = pairs.map(|(index, pair)| {
+        (index + 1, pair[1].translation.distance(pair[0].translation), pair[1].time - pair[0].time)
+    });
+    let mut far = ways.filter(|(_, way, time)| *way > LEAST && f64::from(*way) > fastest * time);
+    far.next()
 }
 
-/// The largest angle \[degrees\] and the index of its key, where all angles are those of radians.
+/// The largest angle \[degrees\] and the index of its key, where it is a part of a turn that a person writes in radians.
 fn largest_angle(keys: &[Values]) -> Option<(usize, f32)> {
-    let all = || keys.iter().flat_map(|key| &key.angles);
     let of_key = |key: &Values| key.angles.iter().fold(0.0_f32, |most, angle| most.max(angle.abs()));
     let (index, most) = keys.iter().map(of_key).enumerate().max_by(|one, two| one.1.total_cmp(&two.1))?;
-    let is_step = |angle: &f32| (angle / STEP - (angle / STEP).round()).abs() < 1e-3;
-    let is_small = most > 0.0 && most < WHOLE_TURN && (most <= UNSEEN || !all().all(is_step));
-    is_small.then_some((index, most))
+    let parts = (most / PART).round();
+    let is_part = parts > 0.0 && (most - parts * PART).abs() < ROUNDED;
+    (is_part && most < WHOLE_TURN).then_some((index, most))
 }
 
 #[cfg(test)]
@@ -135,10 +122,8 @@ mod tests {
         assert_eq!(moved(&[0.0, 2.0, 32.0, 4.0]), [note], "the first one that is far");
         // A person who runs, and one who runs far.
         assert_eq!(moved(&[0.0, 3.0, 6.0, 9.0]), Vec::<String>::new());
-        let far: Vec<f32> = (0..9).map(|index| 3.0 * index as f32).collect();
-        assert!(
-            moved(&far)[0].starts_with("motion.keyframes[7].translation moves the head by 21 m in 3.5 s")
-        );
+        // A rider, far away in the end.
+        assert_eq!(moved(&[0.0, 7.0, 14.0, 21.0, 28.0]), Vec::<String>::new());
         let cut = KeyframeSection { cut: true, ..key(1.0, Vec3::X * 500.0, Vec3::ZERO) };
         assert_eq!(notes_on(vec![key(0.0, Vec3::ZERO, Vec3::ZERO), cut]), Vec::<String>::new(), "a jump");
         let shaken = vec![key(0.0, Vec3::ZERO, Vec3::ZERO), key(0.01, 0.1 * Vec3::X, Vec3::ZERO)];
@@ -154,16 +139,18 @@ mod tests {
         let note = "motion.keyframes[1].rotation has 1.57 degrees, the most of all keys: angles are in degrees, and 1.57 radians \
                     would be 90";
         assert_eq!(turned(&[0.0, -1.57, 0.5]), [note]);
-        assert_eq!(turned(&[0.0, 0.35, 6.3]).len(), 1);
-        assert_eq!(turned(&[0.0, 0.5, 1.0]).len(), 1, "nobody would see it");
-        for angles in [&[0.0, 0.0][..], &[0.0, 1.57, 40.0], &[3.0, -3.0, 1.5], &[0.0, 720.0]] {
+        assert_eq!(turned(&[0.0, 0.35, 6.28]).len(), 1);
+        // Small turns that were recorded, or come of a hand in the window.
+        let small = [&[1e-7, 0.0][..], &[1.2, -0.8], &[2.31, -3.87, 0.44], &[3.3]];
+        let others = [&[0.0, 0.0][..], &[0.0, 1.57, 40.0], &[3.0, -3.0, 1.5], &[0.0, 720.0]];
+        for angles in small.into_iter().chain(others) {
             assert_eq!(turned(angles), Vec::<String>::new(), "{angles:?}");
         }
     }
 
     #[test]
     fn keys_of_solids_and_cameras_are_named_and_unused_ones_are_not() {
-        let keys = vec![key(0.0, Vec3::ZERO, Vec3::ZERO), key(1.0, 15.0 * Vec3::Z, 3.3 * Vec3::X)];
+        let keys = vec![key(0.0, Vec3::ZERO, Vec3::ZERO), key(1.0, 60.0 * Vec3::Z, 3.14 * Vec3::X)];
         let mut scene = Scene::default();
         scene.motion.keyframes.clone_from(&keys);
         assert_eq!(notes(&scene), Vec::<String>::new(), "the head shakes");
@@ -177,8 +164,8 @@ mod tests {
         };
         scene.camera.keyframes = vec![view(0.0, 0.0), view(1.0, 50.0)];
         let found = notes(&scene);
-        assert!(found[0].starts_with("colliders[0].keyframes[1].translation moves the solid by 15 m in 1 s"));
-        assert!(found[1].starts_with("colliders[0].keyframes[1].rotation has 3.3 degrees"), "{found:?}");
+        assert!(found[0].starts_with("colliders[0].keyframes[1].translation moves the solid by 60 m in 1 s"));
+        assert!(found[1].starts_with("colliders[0].keyframes[1].rotation has 3.14 degrees"), "{found:?}");
         assert!(
             found[2].starts_with("camera.keyframes[1].translation moves the camera by 50 m"),
             "{found:?}"

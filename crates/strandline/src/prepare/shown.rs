@@ -70,7 +70,8 @@ fn of_body(scene: &Scene, mesh: &Mesh, defined: Defined) -> (Placing, Pose, Opti
     let mut pose = head::pose(mesh, &ups);
     // An axis that is given names the front too, and a turn that is given is that of the file's own axes.
     if given.up != Up::Auto || defined == Defined::All {
-        (pose.turn, pose.shows_front, pose.is_sure) = (upright(ups[0]), true, true);
+        (pose.turn, pose.shows_front) = (upright(ups[0]), true);
+        (pose.is_sure, pose.has_base) = (true, false);
     } else if given.rotation != Vec3::ZERO {
         (pose.turn, pose.shows_front) = (pose.up.rotation(), true);
     }

@@ -30,10 +30,15 @@ const OF_EDGES: [&str; 2] = ["vertex1", "vertex2"];
 /// [`GroomError::Malformed`] with the error.
 pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError> {
     let source = Source { bytes, format: ".ply" };
-    let asked: [(&str, &[&str]); 4] =
-        [("vertex", &OF_VERTICES), ("strand", &OF_STRANDS), ("edge", &OF_EDGES), ("face", &[])];
+    let asked: [(&str, &[&str]); 5] = [
+        ("vertex", &OF_VERTICES),
+        ("strand", &OF_STRANDS),
+        ("edge", &OF_EDGES),
+        ("face", &[]),
+        ("tristrips", &[]),
+    ];
     let file = ply::read(bytes, asked).map_err(|mismatch| source.error(mismatch.found, mismatch.expected))?;
-    let [vertices, strands, edges, faces] = &file.tables;
+    let [vertices, strands, edges, faces, strips] = &file.tables;
     let count = vertices.rows as u64;
     if !(1..=MAX_POINTS).contains(&count) {
         return Err(source.error(format!("{count} vertices"), format!("1 to {MAX_POINTS}")));
@@ -53,8 +58,8 @@ pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError>
             problems = notes;
             chains
         }
-        (None, None) if faces.rows > 0 => {
-            let found = format!("a mesh of {} faces", faces.rows);
+        (None, None) if faces.rows + strips.rows > 0 => {
+            let found = format!("a mesh of {} faces", faces.rows + strips.rows);
             return Err(source.error(found, "strands; a mesh is a body (`--body`)"));
         }
         (None, None) => {
