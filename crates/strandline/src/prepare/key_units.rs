@@ -16,7 +16,7 @@ const LEAST: f32 = 1.0;
 const WHOLE_TURN: f32 = 7.0;
 /// Part \[radian\] of a turn that a person means, 15 degrees, and how near \[radian\] a rounded one is to whole numbers of it.
 const PART: f32 = std::f32::consts::PI / 12.0;
-const ROUNDED: f32 = 3e-3;
+const ROUNDED: f32 = 4e-3;
 
 /// Values of a key: the time \[s\], the displacement \[m\], the angles \[degrees\], and whether it is a jump.
 struct Values {
