@@ -139,7 +139,7 @@ mod tests {
         let note = "motion.keyframes[1].rotation has 1.57 degrees, the most of all keys: angles are in degrees, and 1.57 radians \
                     would be 90";
         assert_eq!(turned(&[0.0, -1.57, 0.5]), [note]);
-        assert_eq!(turned(&[0.0, 0.35, 6.28]).len(), 1);
+        assert_eq!(turned(&[0.0, 0.35, 4.71]).len(), 1);
         // Small turns that were recorded, or come of a hand in the window.
         let small = [&[1e-7, 0.0][..], &[1.2, -0.8], &[2.31, -3.87, 0.44], &[3.3]];
         let others = [&[0.0, 0.0][..], &[0.0, 1.57, 40.0], &[3.0, -3.0, 1.5], &[0.0, 720.0]];
@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     fn keys_of_solids_and_cameras_are_named_and_unused_ones_are_not() {
-        let keys = vec![key(0.0, Vec3::ZERO, Vec3::ZERO), key(1.0, 60.0 * Vec3::Z, 3.14 * Vec3::X)];
+        let keys = vec![key(0.0, Vec3::ZERO, Vec3::ZERO), key(1.0, 60.0 * Vec3::Z, 1.05 * Vec3::X)];
         let mut scene = Scene::default();
         scene.motion.keyframes.clone_from(&keys);
         assert_eq!(notes(&scene), Vec::<String>::new(), "the head shakes");
@@ -165,7 +165,7 @@ mod tests {
         scene.camera.keyframes = vec![view(0.0, 0.0), view(1.0, 50.0)];
         let found = notes(&scene);
         assert!(found[0].starts_with("colliders[0].keyframes[1].translation moves the solid by 60 m in 1 s"));
-        assert!(found[1].starts_with("colliders[0].keyframes[1].rotation has 3.14 degrees"), "{found:?}");
+        assert!(found[1].starts_with("colliders[0].keyframes[1].rotation has 1.05 degrees"), "{found:?}");
         assert!(
             found[2].starts_with("camera.keyframes[1].translation moves the camera by 50 m"),
             "{found:?}"
