@@ -152,7 +152,8 @@ fn no_scalp_is_seen_through_hair_from_a_metre() {
         let share = open / haired;
         println!("{}: {:.2} % bare, {:.2} % in the worst view", style.name(), 100.0 * share, 100.0 * worst);
         // 2 % is asked for in all views; 2.08 % were seen of a pixie and 2.21 % of coils from one.
-        failed.extend((share > 0.02 || worst > 0.023).then_some((style, share, worst)));
+        let most = if matches!(style, Style::Coils) { 0.023 } else { 0.022 };
+        failed.extend((share > 0.02 || worst > most).then_some((style, share, worst)));
     }
     assert!(failed.is_empty(), "{failed:?}");
     // Hair that stands for a tenth of the strands shows the scalp.
