@@ -1,24 +1,19 @@
 //! The status bar at the foot of the window: devices, speed and quality.
 
-use eframe::egui;
+use eframe::egui::{self, scroll_area::ScrollBarVisibility};
 use strandline::file::counted;
 
 use crate::{App, loading};
 
-/// Draws the bar. In a window of some width it never becomes lower, or the picture above it would change its size, and be
-/// drawn anew, with every word that comes and goes.
+/// Draws the bar, in one row: a second one would change the size of the picture above, which would be drawn anew with every
+/// word that comes and goes. A row wider than the window is scrolled.
 pub fn show(app: &App, ui: &mut egui::Ui) {
-    let (id, width) = (ui.scope_id().with("height"), ui.available_width());
-    let (before, tallest) = ui.data(|data| data.get_temp(id)).unwrap_or((width, 0.0));
-    let least = if before == width { tallest } else { 0.0 };
-    ui.set_min_height(least);
-    words(app, ui);
-    let height = ui.min_rect().height().max(least);
-    ui.data_mut(|data| data.insert_temp(id, (width, height)));
+    let row = egui::ScrollArea::horizontal().auto_shrink([false, true]);
+    row.scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden).show(ui, |ui| words(app, ui));
 }
 
 fn words(app: &App, ui: &mut egui::Ui) {
-    ui.horizontal_wrapped(|ui| {
+    ui.horizontal(|ui| {
         loading::progress(app, ui);
         let Some(shown) = &app.shown else { return };
         ui.label(format!("{:.1} pictures/s", app.rate)).on_hover_text("pictures a second, smoothed");

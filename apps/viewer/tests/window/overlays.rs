@@ -156,5 +156,21 @@ fn a_message_has_its_mend_as_a_button_which_is_a_step() {
     window.press_with(egui::Modifiers::COMMAND, Key::Z);
     window.until("it is undone", |app| !app.is_loading() && app.seen().look.grey == 0.0);
     window.settle();
-    assert_eq!(window.app().seen().to_toml(), before);
+    let after = window.app().seen().to_toml();
+    let differ: Vec<_> = before.lines().zip(after.lines()).filter(|(was, is)| was != is).collect();
+    assert!(before == after, "lines that differ, before and after: {differ:?}");
+}
+
+#[test]
+fn words_that_come_and_go_leave_the_picture_its_size() {
+    // Narrow enough that the words of the status bar are wider than the window.
+    let mut window = Window::of_size(scene(), egui::vec2(560.0, 420.0), 1.0);
+    window.pass(Vec::new(), None);
+    let size = |app: &App| [app.seen().picture.width, app.seen().picture.height];
+    let first = size(window.app());
+    window.until("a picture", |app| app.shown().is_some_and(|shown| shown.step.is_some()));
+    window.press(Key::Space);
+    window.settle();
+    assert!(window.has_label("simulated and drawn on the CPU"));
+    assert_eq!(size(window.app()), first);
 }
