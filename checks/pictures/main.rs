@@ -8,6 +8,7 @@ mod drawn;
 mod fibre;
 mod golden;
 mod grooms;
+mod heads;
 mod light;
 mod linear;
 mod mixture;

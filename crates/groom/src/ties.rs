@@ -27,6 +27,9 @@ const SHARE: f32 = 0.25;
 const FEWEST: usize = 20;
 /// Times that roots lie farther apart than the strands in the knot, at least.
 const GATHERED: f32 = 3.5;
+/// Times that strands of a knot lie farther apart that far before it, at least: 2.7 to 3.5 in tails and buns, 1.3 in a lock that
+/// hair swept back gathers in.
+const NARROWS: f32 = 2.0;
 /// Share of the most strands of a place that the knot, the first such place from the roots, has at least.
 const NEARLY_ALL: f32 = 0.9;
 /// Most strands that are looked at.
@@ -67,7 +70,7 @@ impl Guides {
     }
 
     /// The knots of a groom: places where a quarter of all strands or more come together from roots that lie 3.5 times as
-    /// far apart. Curtains and locks of hair are none. The largest comes first.
+    /// far apart, within a few centimetres. Curtains and locks of hair are none. The largest comes first.
     pub fn knots(&self) -> Vec<Tie> {
         let every = self.strand_count().div_ceil(LOOKED_AT);
         let mut left: BTreeSet<usize> = (0..self.strand_count()).step_by(every).collect();
@@ -88,6 +91,8 @@ struct Meeting {
     place: Vec3,
     /// Hair \[m\] before it.
     before: f32,
+    /// Place of the strand [`BEFORE`] it.
+    earlier: Vec3,
 }
 
 /// Points that may lie in a knot, by cells of an edge of [`REACH`].
@@ -111,7 +116,8 @@ impl Meetings {
                     let (place, before) = (pair[0].lerp(pair[1], share), before + share * way);
                     if before > BEFORE && place.abs().max_element() < 1e4 {
                         let cell = (place / REACH).floor().as_ivec3().to_array();
-                        cells.entry(cell).or_default().push(Meeting { strand, place, before });
+                        let earlier = place_at(&places, before - BEFORE);
+                        cells.entry(cell).or_default().push(Meeting { strand, place, before, earlier });
                     }
                 }
                 before += way;
@@ -157,6 +163,10 @@ impl Meetings {
             if spread(roots(), mean(roots())) < GATHERED * apart {
                 continue;
             }
+            let earlier = || met.iter().map(|meeting| meeting.earlier);
+            if spread(earlier(), mean(earlier())) < NARROWS * apart {
+                continue;
+            }
             let before = met.iter().map(|meeting| meeting.before).sum::<f32>() / met.len() as f32;
             let farthest = met.iter().map(|meeting| meeting.place.distance(middle)).fold(0.0, f32::max);
             found.push((met.len(), before, Tie { position: middle, radius: farthest + 1e-3 }));
@@ -165,6 +175,18 @@ impl Meetings {
         let near = found.into_iter().filter(|(count, ..)| *count as f32 >= NEARLY_ALL * most);
         near.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(.., tie)| tie)
     }
+}
+
+/// The place so far \[m\] along a strand.
+fn place_at(strand: &[Vec3], mut length: f32) -> Vec3 {
+    for pair in strand.windows(2) {
+        let way = pair[0].distance(pair[1]);
+        if length <= way {
+            return pair[0].lerp(pair[1], length / way.max(1e-30));
+        }
+        length -= way;
+    }
+    strand.last().copied().unwrap_or_default()
 }
 
 fn mean(places: impl Iterator<Item = Vec3>) -> Vec3 {
@@ -181,6 +203,8 @@ fn spread(places: impl Iterator<Item = Vec3>, middle: Vec3) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use strandline_base::math::{cos, sin};
+
     use super::*;
     use crate::{Style, StyleSettings};
 
@@ -200,6 +224,31 @@ mod tests {
         assert!(held > 390, "{held} of 400 strands");
         for style in [Style::Long, Style::Wavy, Style::Curly, Style::Bob, Style::Pixie] {
             assert_eq!(grown(style).knots(), [], "{style:?}");
+        }
+    }
+
+    /// A lock that 200 strands from the whole scalp gather in, in a tube of a radius \[m\] at its end and wider for so far before
+    /// it.
+    fn lock(radius: f32, over: f32) -> Guides {
+        let strand = |index: usize| {
+            let (turn, out) = (index as f32 * 2.4, (index as f32 / 200.0).sqrt());
+            let aside = out * Vec3::new(cos(turn), 0.0, sin(turn));
+            (0..40).map(move |point| {
+                let way = point as f32 * 0.01;
+                let wider = ((0.25 - way) / over).clamp(0.0, 1.0);
+                aside * (radius + (0.12 - radius) * wider) - way * Vec3::Y
+            })
+        };
+        let mut groom = crate::Groom::empty(8e-5);
+        (0..200).for_each(|index| groom.push(strand(index)));
+        Guides::resample(&groom, 40).unwrap()
+    }
+
+    #[test]
+    fn tied_hair_narrows_within_centimetres_and_a_swept_lock_does_not() {
+        assert_eq!(lock(0.012, 0.05).knots().len(), 1);
+        for radius in [0.02, 0.025, 0.03] {
+            assert_eq!(lock(radius, 0.25).knots(), [], "{radius} m");
         }
     }
 
