@@ -4,6 +4,7 @@
 mod writer;
 
 use glam::{Vec2, Vec3};
+use strandline_base::counted;
 use strandline_base::ply::{self, Table};
 
 use super::bytes::Source;
@@ -59,7 +60,11 @@ pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError>
             chains
         }
         (None, None) if faces.rows + strips.rows > 0 => {
-            let found = format!("a mesh of {} faces", faces.rows + strips.rows);
+            let found = match strips.rows {
+                0 => counted(faces.rows, "face", "faces"),
+                count => counted(count, "strip of triangles", "strips of triangles"),
+            };
+            let found = format!("a mesh of {found}");
             return Err(source.error(found, "strands; a mesh is a body (`--body`)"));
         }
         (None, None) => {
