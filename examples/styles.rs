@@ -12,6 +12,8 @@ use strandline::{
 const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../apps/viewer/assets");
 /// Side of a small picture \[pixel\].
 const SMALL: u32 = 64;
+/// Fringe of the last picture \[m\].
+const FRINGE: f32 = 0.05;
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/styles.md");
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -30,16 +32,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     std::fs::create_dir_all(folder)?;
     let mut small = Vec::new();
     for style in Style::ALL {
-        let (mut hair, camera) = grown(style, quick)?;
-        let look = hair.look().clone();
-        let picture = hair.picture(&camera, &look)?;
-        assert!(!picture.is_blank(), "{}", style.name());
-        picture.save(folder.join(format!("style_{}.png", style.name())))?;
-        small.push(picture);
+        small.push(drawn(style, 0.0, quick)?);
+        small[small.len() - 1].save(folder.join(format!("style_{}.png", style.name())))?;
     }
+    drawn(Style::Bob, FRINGE, quick)?.save(folder.join("style_fringe.png"))?;
     let assets = if quick { folder } else { Path::new(ASSETS) };
     row(&small).save(assets.join("styles.jpg"))?;
-    let (mut hair, camera) = grown(Style::Bob, quick)?;
+    let (mut hair, camera) = grown(Style::Bob, 0.0, quick)?;
     let mut looks = Vec::new();
     for preset in Preset::ALL.into_iter().step_by(if quick { 6 } else { 1 }) {
         let mut look = hair.look().clone();
@@ -50,10 +49,20 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
+/// The picture of a style.
+fn drawn(style: Style, fringe: f32, quick: bool) -> Result<Picture, Box<dyn std::error::Error>> {
+    let (mut hair, camera) = grown(style, fringe, quick)?;
+    let look = hair.look().clone();
+    let picture = hair.picture(&camera, &look)?;
+    assert!(!picture.is_blank(), "{}", style.name());
+    Ok(picture)
+}
+
 /// A style on the built-in head, and the camera that sees the most of it.
-fn grown(style: Style, quick: bool) -> Result<(Hair, Camera), strandline::Error> {
+fn grown(style: Style, fringe: f32, quick: bool) -> Result<(Hair, Camera), strandline::Error> {
     let mut scene = Scene::demo();
     scene.set_style(style);
+    scene.style.fringe = fringe;
     let side = if quick { 48 } else { 300 };
     (scene.picture.width, scene.picture.height) = (side, side);
     if quick {
@@ -105,5 +114,11 @@ fn page() -> Result<String, Box<dyn std::error::Error>> {
             write!(page, "\n```toml\n[style]\n{}\n```\n", own.join("\n"))?;
         }
     }
+    write!(
+        page,
+        "\n## With a fringe\n\n![fringe](gallery/style_fringe.png)\n\n\
+         Hair that falls from a parting or is tied may have a fringe: a bob to the brows.\n\n\
+         ```toml\n[style]\nstyle = \"bob\"\nfringe = {FRINGE}\n```\n"
+    )?;
     Ok(page)
 }

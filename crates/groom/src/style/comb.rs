@@ -23,6 +23,10 @@ const AHEAD: f32 = 0.006;
 const MIDDLE: Vec3 = Vec3::new(0.0, 0.010, -0.010);
 /// The room in front of the face that falling hair keeps free: centre and half axes \[m\].
 const FACE: (Vec3, Vec3) = (Vec3::new(0.0, -0.085, 0.080), Vec3::new(0.062, 0.145, 0.075));
+/// Height, and place on the z axis in the middle \[m\], of the hairline above the forehead, and how it goes back aside \[1/m\].
+const HAIRLINE: (f32, f32, f32) = (0.056, 0.085, 9.0);
+/// Half of the breadth and the depth \[m\] of the section of hair that is cut as a fringe, a triangle behind the hairline.
+const SECTION: (f32, f32) = (0.055, 0.040);
 /// Strands rooted in front of this plane \[m\] fall before the shoulder.
 const FRONT_FROM: f32 = 0.012;
 /// From this height \[m\] on the skull the hair no longer heeds the parting.
@@ -53,7 +57,7 @@ impl Place {
 pub struct Combed {
     /// Its root.
     pub root: Root,
-    /// Which side of the parting it falls to, -1 or 1.
+    /// The side of the parting that it falls to, -1 or 1; 0 for a strand of the fringe.
     pub side: f32,
     /// Its place across the tie, in the unit disc.
     pub place: Vec2,
@@ -66,7 +70,13 @@ impl Combed {
     /// side of strands on the parting itself.
     pub fn new(root: Root, settings: &StyleSettings, place: Vec2, chance: f32) -> Self {
         let across = root.position.x - settings.parting + 0.002 * (chance - 0.5);
-        Self { root, side: if across < 0.0 { -1.0 } else { 1.0 }, place, tied: false }
+        let side = if across < 0.0 { -1.0 } else { 1.0 };
+        Self { root, side: if in_fringe(settings, &root) { 0.0 } else { side }, place, tied: false }
+    }
+
+    /// True for a strand of the fringe.
+    pub fn is_fringe(&self) -> bool {
+        self.side == 0.0
     }
 
     /// The place \[m\] in the tie that this strand passes.
@@ -76,6 +86,9 @@ impl Combed {
 
     /// Direction at a place on or above the skin.
     pub fn direction(&self, settings: &StyleSettings, place: Place) -> Vec3 {
+        if self.is_fringe() {
+            return self.over_forehead(place);
+        }
         match settings.style {
             Style::Ponytail if self.tied => self.tail(place.passed),
             Style::Bun if self.tied => self.wound(place),
@@ -90,6 +103,12 @@ impl Combed {
             // Combed in their own way.
             Style::Beard | Style::Brows => Vec3::NEG_Y,
         }
+    }
+
+    /// Forward over the hairline, then down.
+    fn over_forehead(&self, place: Place) -> Vec3 {
+        let forward = place.along(Vec3::new(4.0 * self.root.position.x, -0.4, 1.0));
+        forward.lerp(Vec3::new(0.0, -1.0, -0.12), smooth(0.066, 0.040, place.point.y))
     }
 
     /// Along the skin to the tie; over the ear, not across it.
@@ -205,6 +224,21 @@ impl Combed {
         let inward = Vec3::new(-point.x, 0.0, -0.03 - point.z).normalize_or_zero();
         settings.turn_under * near_end * inward
     }
+}
+
+/// True if hair at a root is cut as a fringe.
+pub fn in_fringe(settings: &StyleSettings, root: &Root) -> bool {
+    if settings.fringe == 0.0 || !(settings.style.is_parted() || settings.style.is_tied()) {
+        return false;
+    }
+    let Vec3 { x, y, z } = root.position;
+    let behind = HAIRLINE.1 - HAIRLINE.2 * x * x - z;
+    y > 0.03 && behind < SECTION.1 * (1.0 - x.abs() / SECTION.0)
+}
+
+/// Height \[m\] at which a fringe is cut.
+pub fn fringe_end(settings: &StyleSettings) -> f32 {
+    HAIRLINE.0 - settings.fringe
 }
 
 /// Rises smoothly from 0 at `from` to 1 at `to`; falls when `to` is the smaller.

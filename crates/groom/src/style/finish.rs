@@ -62,8 +62,10 @@ fn clumps(count: usize, strands: &[Strand]) -> Vec<u32> {
             for y in (at.y - 2).max(0)..=(at.y + 2).min(side as i32 - 1) {
                 for x in (at.x - 2).max(0)..=(at.x + 2).min(side as i32 - 1) {
                     for &middle in &squares[y as usize * side + x as usize] {
-                        let gap = strands[middle as usize].root.position.distance(strand.root.position);
-                        if gap < best.0 {
+                        let other = &strands[middle as usize];
+                        let gap = other.root.position.distance(strand.root.position);
+                        let alike = (other.side == 0.0) == (strand.side == 0.0);
+                        if gap < best.0 && alike {
                             best = (gap, middle);
                         }
                     }

@@ -6,7 +6,7 @@ use strandline_base::memory::{self, Need};
 use strandline_base::par::prelude::*;
 use strandline_body::{Mannequin, Random, Root, SignedDistance};
 
-use super::comb::{Combed, Place, TIE_RADIUS, smooth};
+use super::comb::{Combed, Place, TIE_RADIUS, fringe_end, smooth};
 use super::face;
 use super::hair;
 use super::locks::{self, Shaped};
@@ -27,6 +27,8 @@ const RISE: f32 = 0.10;
 
 /// A dome over the ear: centre on the side of positive x and half axes \[m\].
 const EAR_DOME: (Vec3, Vec3) = (Vec3::new(0.062, -0.026, -0.012), Vec3::new(0.033, 0.056, 0.050));
+/// Height \[m\] over which the cut of a fringe is spread.
+const FRINGE_UNEVEN: f32 = 0.006;
 /// Blend of the dome and the skin \[m\].
 const DOME_REACH: f32 = 0.016;
 
@@ -129,9 +131,13 @@ fn march(settings: &StyleSettings, skin: &Skin, index: usize, root: Root) -> Str
     let length =
         settings.length * (1.0 - settings.length_variation * variation) * style_length(settings, &root);
     let crown = smooth(-0.06, 0.10, root.position.y);
-    let cut_height = settings.cut_height + settings.layering * (0.6 * crown + 0.4 * cut);
+    let cut_height = match combed.is_fringe() {
+        true => fringe_end(settings) + FRINGE_UNEVEN * cut,
+        false => settings.cut_height + settings.layering * (0.6 * crown + 0.4 * cut),
+    };
     // Hair from higher up lies over hair from below, and every hair has its depth in its layer.
-    let thickness = settings.volume * (0.25 + 0.75 * depth) * (0.7 + 3.0 * root.position.y.max(0.0));
+    let lies = if combed.is_fringe() { 0.5 } else { 1.0 };
+    let thickness = lies * settings.volume * (0.25 + 0.75 * depth) * (0.7 + 3.0 * root.position.y.max(0.0));
     let (mut points, mut point) = (vec![root.position], root.position);
     let mut direction = leaving(settings, &combed);
     let mut passed_tie = 0.0;
@@ -176,7 +182,7 @@ fn leaving(settings: &StyleSettings, combed: &Combed) -> Vec3 {
     let flow = combed.direction(settings, place).normalize_or(normal);
     let lift = if settings.style.is_tied() { 0.25 } else { 0.6 };
     // Beside the parting hair rises before it falls to its side, which hides the skin.
-    let beside = if settings.style.is_parted() {
+    let beside = if settings.style.is_parted() && !combed.is_fringe() {
         smooth(0.012, 0.0, (combed.root.position.x - settings.parting).abs())
             * smooth(-0.02, 0.03, combed.root.position.y)
     } else {

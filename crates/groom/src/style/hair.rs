@@ -7,7 +7,7 @@ use strandline_base::math;
 use strandline_base::par::prelude::*;
 use strandline_body::{Mannequin, Random, Root, Scalp};
 
-use super::comb::{WHORL, smooth};
+use super::comb::{WHORL, in_fringe, smooth};
 use super::near::Near;
 use super::strand::{Strand, nearer};
 use super::{Style, StyleSettings};
@@ -16,6 +16,8 @@ use super::{Style, StyleSettings};
 const WITH: usize = 3;
 /// Distance \[m\] added between a strand and a guide that falls to the other side.
 const OTHER_SIDE: f32 = 0.02;
+/// Distance \[m\] added between a strand of the fringe and a guide beside it.
+const NOT_OF_FRINGE: f32 = 0.05;
 /// Distance \[m\] of points of two guides from which they have parted ways: no strand runs between them.
 const PARTED: f32 = 0.045;
 /// Share of strands beside a parting that cross it, and how far from it they do \[m\].
@@ -103,10 +105,15 @@ fn beside(
     index: usize,
 ) -> (Strand, usize) {
     let mut random = Random::new(settings.seed, 5_000_000_000 + index as u64);
-    let side = side(settings, &root, &mut random);
+    let falls = side(settings, &root, &mut random);
+    let side = if in_fringe(settings, &root) { 0.0 } else { falls };
     let parted =
         if settings.style.is_parted() { smooth(WHORL.z, WHORL.z + 0.03, root.position.z) } else { 0.0 };
-    let other_side = |guide: usize| if guides[guide].side == side { 0.0 } else { OTHER_SIDE * parted };
+    let other_side = |guide: usize| match guides[guide].side {
+        of_guide if of_guide == side => 0.0,
+        of_guide if of_guide * side == 0.0 => NOT_OF_FRINGE,
+        _ => OTHER_SIDE * parted,
+    };
     let led = root.position + across_whorl(settings, &root, index);
     let found = near.nearest::<WITH>(led, other_side);
     let first = &guides[found[0].0];

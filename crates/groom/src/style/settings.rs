@@ -25,6 +25,9 @@ settings! {
         turn_under: f32 = 0.0, in [0.0, 2.0], more "ends that curl further in";
         /// Place of the parting, positive on the head's left.
         parting: f32 = 0.0, in [-0.07, 0.07] "m", more "a parting further left";
+        /// Way below the hairline at which hair from above the forehead is cut that falls over it; 0 leaves the forehead
+        /// free, and 0.05 reaches the brows. For hair that falls from a parting or is tied.
+        fringe: f32 = 0.0, in [0.0, 0.3] "m", slider [0.0, 0.1], more "a longer fringe";
         /// Turn of the hair around the whorl.
         swirl: f32 = 0.0, in [-3.0, 3.0] "rad", more "a tighter whorl";
         /// Thickness of the hair that lies on the skull.

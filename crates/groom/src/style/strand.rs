@@ -23,7 +23,7 @@ const WHORL_REACH: (f32, f32) = (0.050, 1.7);
 pub struct Strand {
     /// Its root.
     pub root: Root,
-    /// The side of the parting that it falls to, -1 or 1.
+    /// The side of the parting that it falls to, -1 or 1; 0 for a strand of the fringe.
     pub side: f32,
     /// Its points \[m\], evenly spaced.
     pub points: Vec<Vec3>,

@@ -72,6 +72,28 @@ fn a_bob_ends_level() {
 }
 
 #[test]
+fn a_fringe_falls_over_the_forehead_to_its_length_and_leaves_other_hair_alone() {
+    for style in [Style::Bob, Style::Ponytail] {
+        let plain = StyleSettings { strand_count: 400, ..StyleSettings::new(style) };
+        let with = StyleSettings { fringe: 0.05, ..plain };
+        let [before, after] = [plain, with].map(|settings| settings.grow_hair(1600).unwrap());
+        let tips = tips(&after);
+        // Before the forehead, whose middle lies 8.5 cm before that of the head, above the eyes.
+        let fringe: Vec<_> = tips.iter().filter(|tip| tip.z > 0.07 && tip.y > -0.01).collect();
+        assert!(fringe.len() > 80, "{} {}", style.name(), fringe.len());
+        // Cut 5 cm below the hairline at .056, over 6 mm, shorter by thinning of up to a seventh of 10 cm.
+        let ends = |tip: &&&glam::Vec3| (-0.004..0.03).contains(&tip.y);
+        assert!(fringe.iter().filter(ends).count() * 20 > fringe.len() * 19, "{}", style.name());
+        let moved = (0..400).filter(|strand| before.strand(*strand) != after.strand(*strand)).count();
+        assert!(moved < 80, "{}: {moved} of 400 guides", style.name());
+        // Single short hairs of the hairline end there in any style.
+        let of_before = self::tips(&before);
+        let short = of_before.iter().filter(|tip| tip.z > 0.07 && tip.y > -0.01).count();
+        assert!(short < 8, "{}: {short}", style.name());
+    }
+}
+
+#[test]
 fn a_ponytail_hangs_together_behind_the_head() {
     let tips = tips(&grown(Style::Ponytail, 4));
     let middle = tips.iter().sum::<glam::Vec3>() / tips.len() as f32;
