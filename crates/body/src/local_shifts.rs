@@ -2,6 +2,7 @@
 //! shoulders move.
 
 use glam::{IVec3, Vec3, Vec3A};
+use strandline_base::par::prelude::*;
 
 /// Least edge \[m\] of a cell, and the cells around that of a point whose boxes count for it.
 const EDGE: f32 = 0.03;
@@ -26,8 +27,12 @@ pub(crate) struct LocalShifts {
 
 impl LocalShifts {
     /// Boxes at the end of a step within a box around all, corners in metres, each with the square \[m^2\] of the most that
-    /// its content has moved; `None` where boxes are too large for cells.
-    pub fn new([low, high]: [Vec3A; 2], boxes: impl Iterator<Item = ([Vec3A; 2], f32)>) -> Option<Self> {
+    /// its content has moved, in parts that run on all threads; `None` where boxes are too large for cells.
+    pub fn new<Boxes: Iterator<Item = ([Vec3A; 2], f32)>>(
+        [low, high]: [Vec3A; 2],
+        parts: usize,
+        boxes: impl Fn(usize) -> Boxes + Sync,
+    ) -> Option<Self> {
         let (low, extent) = (Vec3::from(low), Vec3::from(high - low));
         if extent.is_nan() || extent.max_element() > MOST_EXTENT {
             return None;
@@ -40,19 +45,18 @@ impl LocalShifts {
             edge *= 1.5;
         }
         let (size, origin) = (size_of(edge), low - edge * (AROUND + 1) as f32);
-        let mut found = Self { origin, per_metre: 1.0 / edge, size, shifts: vec![0.0; count(size) as usize] };
-        let mut filled = 0;
-        for ([low, high], shift) in boxes {
-            let (low, high) = (found.cell(low.into()), found.cell(high.into()));
-            filled += count(high - low + 1);
-            if filled > MOST_FILLED {
-                return None;
-            }
-            for (z, y) in (low.z..=high.z).flat_map(|z| (low.y..=high.y).map(move |y| (z, y))) {
-                let row = found.index(IVec3::new(low.x, y, z));
-                let cells = &mut found.shifts[row..=row + (high.x - low.x) as usize];
-                cells.iter_mut().for_each(|most| *most = most.max(shift));
-            }
+        let empty = Self { origin, per_metre: 1.0 / edge, size, shifts: vec![0.0; count(size) as usize] };
+        let filled: Vec<Option<(Self, i64)>> =
+            (0..parts).into_par_iter().map(|part| empty.clone().filled(boxes(part))).collect();
+        let (mut found, mut all_filled) = (empty, 0);
+        for part in filled {
+            let (part, filled) = part?;
+            all_filled += filled;
+            let both = found.shifts.iter_mut().zip(part.shifts);
+            both.for_each(|(most, shift)| *most = most.max(shift));
+        }
+        if all_filled > MOST_FILLED {
+            return None;
         }
         let strides = [1, size.x, size.x * size.y];
         for (stride, cells) in strides.into_iter().zip(size.to_array()) {
@@ -62,6 +66,25 @@ impl LocalShifts {
         Some(found)
     }
 
+    /// The same with the squares of boxes in their cells, and the number of these for all boxes together; `None` for too many.
+    fn filled(mut self, boxes: impl Iterator<Item = ([Vec3A; 2], f32)>) -> Option<(Self, i64)> {
+        let mut filled = 0;
+        for ([low, high], shift) in boxes {
+            let (low, high) = (self.cell(low.into()), self.cell(high.into()));
+            let [x, y, z] = (high - low + 1).to_array().map(i64::from);
+            filled += x * y * z;
+            if filled > MOST_FILLED {
+                return None;
+            }
+            for (z, y) in (low.z..=high.z).flat_map(|z| (low.y..=high.y).map(move |y| (z, y))) {
+                let row = self.index(IVec3::new(low.x, y, z));
+                let cells = &mut self.shifts[row..=row + (high.x - low.x) as usize];
+                cells.iter_mut().for_each(|most| *most = most.max(shift));
+            }
+        }
+        Some((self, filled))
+    }
+
     /// Distance \[m\] within which all boxes count.
     pub fn reach(&self) -> f32 {
         KEPT * AROUND as f32 / self.per_metre
@@ -69,14 +92,15 @@ impl LocalShifts {
 
     /// The most \[m\] that anything has moved which is within [`Self::reach`] of a point at the end.
     pub fn about(&self, point: Vec3) -> f32 {
-        let cell = ((point - self.origin) * self.per_metre).floor();
+        let cell = (point - self.origin) * self.per_metre;
         // No box lies near a point beyond the border.
         let is_within = cell.cmpge(Vec3::ZERO).all() && cell.cmplt(self.size.as_vec3()).all();
         if is_within { self.shifts[self.index(cell.as_ivec3())] } else { 0.0 }
     }
 
     fn cell(&self, place: Vec3) -> IVec3 {
-        ((place - self.origin) * self.per_metre).floor().as_ivec3().clamp(IVec3::ZERO, self.size - 1)
+        // Rounded toward 0: what lies below 0 is clamped.
+        ((place - self.origin) * self.per_metre).as_ivec3().clamp(IVec3::ZERO, self.size - 1)
     }
 
     fn index(&self, cell: IVec3) -> usize {
@@ -117,7 +141,8 @@ mod tests {
     #[test]
     fn no_box_within_reach_moves_more() {
         let (bounds, boxes) = plane();
-        let shifts = LocalShifts::new(bounds, boxes.iter().copied()).unwrap();
+        let parts = |part: usize| boxes.iter().skip(part).step_by(3).copied();
+        let shifts = LocalShifts::new(bounds, 3, parts).unwrap();
         assert!(shifts.reach() > 0.059);
         let (mut least, mut most) = (f32::INFINITY, 0.0_f32);
         for index in 0..400 {
@@ -140,7 +165,8 @@ mod tests {
     #[test]
     fn boxes_too_large_for_cells_have_none() {
         let all = [Vec3A::ZERO, Vec3A::splat(900.0)];
-        assert!(LocalShifts::new(all, std::iter::repeat_n((all, 1.0), 40)).is_none());
-        assert!(LocalShifts::new([Vec3A::ZERO, Vec3A::INFINITY], std::iter::empty()).is_none());
+        // Any of the two parts has fewer cells than are too many.
+        assert!(LocalShifts::new(all, 2, |_| std::iter::repeat_n((all, 1.0), 20)).is_none());
+        assert!(LocalShifts::new([Vec3A::ZERO, Vec3A::INFINITY], 1, |_| std::iter::empty()).is_none());
     }
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::{Mat3, Vec3, Vec3A};
+use strandline_base::par::prelude::*;
 
 use crate::local_shifts::LocalShifts;
 use crate::nearest_corner::{Feature, nearest_on};
@@ -32,6 +33,8 @@ pub struct PosedSkin {
     most_shift: f32,
     /// Ways of triangles by their place; none where nothing moves.
     shifts: Option<LocalShifts>,
+    /// Mean way \[m\] of the corners of each triangle; empty where nothing moves.
+    drifts: Vec<Vec3>,
 }
 
 /// The nearest place of a skin.
@@ -84,9 +87,15 @@ impl PosedSkin {
         let boxes = solid.boxes_about(&end);
         let made_of = skins.map(|skin| skin.cloned());
         let moves = most_shift > 0.0;
-        let shifts =
-            if moves { LocalShifts::new(boxes[0], solid.shifts_of_leaves(&boxes, &squares)) } else { None };
-        Some(Self { solid: Arc::clone(solid), made_of, start, end, boxes, most_shift, shifts })
+        let leaves = |part: usize| solid.shifts_of_leaves(part, &boxes, &squares);
+        let shifts = if moves { LocalShifts::new(boxes[0], solid.part_count(), leaves) } else { None };
+        let drift = |corners: &[u32; 3]| {
+            let way = |corner: &u32| end[*corner as usize] - start[*corner as usize];
+            corners.iter().map(way).sum::<Vec3>() / 3.0
+        };
+        let triangles = if moves { &solid.triangles[..] } else { &[] };
+        let drifts = triangles.par_iter().with_min_len(2048).map(drift).collect();
+        Some(Self { solid: Arc::clone(solid), made_of, start, end, boxes, most_shift, shifts, drifts })
     }
 
     /// The skin of a collider that the head carries, through a step between two frames of the body; `None` for other
@@ -281,9 +290,7 @@ impl PosedSkin {
 
     /// Mean way \[m\] of the corners of a triangle through the step; none of an unknown one.
     pub fn drift(&self, triangle: u32) -> Vec3 {
-        let Some(corners) = self.solid.triangles.get(triangle as usize) else { return Vec3::ZERO };
-        let way = |corner: &u32| self.end[*corner as usize] - self.start[*corner as usize];
-        corners.iter().map(way).sum::<Vec3>() / 3.0
+        self.drifts.get(triangle as usize).copied().unwrap_or_default()
     }
 
     /// Motion of a triangle about its place nearest to a point of the start \[m\]; `None` where it has no area.

@@ -11,6 +11,9 @@ use crate::{Aabb, BodyError, DistanceGrid, Mesh};
 
 /// Most triangles of a leaf.
 const LEAF: usize = 4;
+/// Least nodes of a part of the tree whose leaves are listed together, and most parts.
+const PART: usize = 4096;
+const MOST_PARTS: usize = 8;
 /// No triangle.
 pub(crate) const NONE: u32 = u32::MAX;
 
@@ -143,14 +146,25 @@ impl SkinSolid {
         boxes
     }
 
-    /// The boxes of all leaves, each with the most of the numbers of its vertices.
+    /// Number of nodes of each part of the tree whose leaves are listed together.
+    fn part_size(&self) -> usize {
+        self.nodes.len().div_ceil(MOST_PARTS).max(PART)
+    }
+
+    /// Number of these parts.
+    pub(crate) fn part_count(&self) -> usize {
+        self.nodes.len().div_ceil(self.part_size())
+    }
+
+    /// The boxes of the leaves in a part of the tree, each with the most of the numbers of its vertices.
     pub(crate) fn shifts_of_leaves<'a>(
         &'a self,
+        part: usize,
         boxes: &'a [[Vec3A; 2]],
         squares: &'a [f32],
     ) -> impl Iterator<Item = ([Vec3A; 2], f32)> + 'a {
-        let leaves = self.nodes.iter().zip(boxes).filter(|(node, _)| node.right == 0);
-        leaves.map(|(node, corners)| {
+        let nodes = self.nodes.iter().zip(boxes).skip(part * self.part_size()).take(self.part_size());
+        nodes.filter(|(node, _)| node.right == 0).map(|(node, corners)| {
             let triangles = &self.triangles[node.range[0] as usize..node.range[1] as usize];
             let all = triangles.iter().flatten().map(|corner| squares[*corner as usize]);
             (*corners, all.fold(0.0, f32::max))

@@ -139,6 +139,9 @@ fn triangles_carry_what_lies_near_them() {
     let place = point + vec3(-0.01, 0.0, 0.0);
     assert!(shift.distance(turn * place + Vec3::X - place) < 2e-3, "{shift}");
     assert!(posed.motion(PosedSkin::UNKNOWN, point).is_none());
+    let drift = posed.drift(triangle);
+    assert!(drift.distance(turn * place + Vec3::X - place) < 0.02, "{drift}");
+    assert_eq!([posed.drift(PosedSkin::UNKNOWN), start.drift(triangle)], [Vec3::ZERO; 2]);
 }
 
 /// The outer ear of the sample bust is thinner than its triangles, which cross there: the angle-weighted normal of a vertex

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use strandline_base::par::prelude::*;
+use strandline_base::vec3x8::{Rigid, Vec3x8, load, splat};
 use strandline_body::{Carrier, Collider, Pose, PosedSkin, Shape};
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
@@ -103,35 +104,31 @@ impl Contacts {
     }
 }
 
-/// Heights of points above all solids, as their planes tell at the end of a step.
-pub struct Heights<'a> {
-    contacts: &'a Contacts,
-    points: usize,
-    carrier_from_world: Vec<Pose>,
-}
-
-impl<'a> Heights<'a> {
-    /// Planes of strands of a number of points.
-    pub fn new(contacts: &'a Contacts, obstacles: &Obstacles, points: usize) -> Self {
+impl Contacts {
+    /// Lower bounds \[m\] of the distances of all solids from points at `positions` \[m\] at the end of a step, as their planes
+    /// tell, shape `[block][point]` of lanes; negative infinity where a plane is unknown, or of a point deeper than a look says.
+    pub fn heights(&self, obstacles: &Obstacles, positions: &[Vec3Lanes], points: usize) -> Vec<Lanes> {
         let inverse = |carrier| match carrier {
             Carrier::Piece(piece) | Carrier::Moved(piece) => obstacles.end.piece(piece.into()).inverse(),
             Carrier::World => Pose::IDENTITY,
         };
-        let carrier_from_world = carriers(obstacles.colliders).into_iter().map(inverse).collect();
-        Self { contacts, points, carrier_from_world }
-    }
-
-    /// Lower bound \[m\] of the distance of all solids from the point of a slot `[block][point]` and a lane, which lies at
-    /// `position` \[m\]; negative infinity where a plane is unknown, or of a point deeper than a look says.
-    pub fn at_least(&self, slot: usize, lane: usize, position: Vec3) -> f32 {
-        let (block, point) = (&self.contacts.blocks[slot / self.points], slot % self.points);
-        let heights = self.carrier_from_world.iter().enumerate().map(|(carrier, from_world)| {
-            let plane = &block[carrier * self.points + point];
-            let distance = plane.distance.0[lane];
-            let known = if distance > -MOST_DEPTH { distance } else { f32::NEG_INFINITY };
-            known - plane.anchor.get(lane).distance(from_world.point(position))
+        let from_world: Vec<Rigid> =
+            carriers(obstacles.colliders).into_iter().map(|carrier| Rigid::new(&inverse(carrier))).collect();
+        let mut heights = vec![Lanes([f32::INFINITY; LANES]); positions.len()];
+        let blocks = heights.par_chunks_mut(points).zip(positions.par_chunks(points)).zip(&self.blocks);
+        blocks.with_min_len(16).for_each(|((heights, positions), planes)| {
+            for (planes, from_world) in planes.chunks(points).zip(&from_world) {
+                for ((height, position), plane) in heights.iter_mut().zip(positions).zip(planes) {
+                    let local = from_world.points(Vec3x8::load(position));
+                    let distance = load(&plane.distance);
+                    let is_known = distance.simd_gt(splat(-MOST_DEPTH));
+                    let known = is_known.bitselect(distance, splat(f32::NEG_INFINITY));
+                    let least = known - (local - Vec3x8::load(&plane.anchor)).length();
+                    height.0 = load(height).fast_min(least).to_array();
+                }
+            }
         });
-        heights.fold(f32::INFINITY, f32::min)
+        heights
     }
 }
 

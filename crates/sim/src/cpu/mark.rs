@@ -9,7 +9,7 @@ use super::volume::Volume;
 use crate::cells::Grid;
 use crate::cells::Kind;
 use crate::contact::Obstacles;
-use crate::contact::planes::{Contacts, Heights};
+use crate::contact::planes::Contacts;
 
 /// Points of a cell whose planes are asked.
 const ASKED: usize = 4;
@@ -64,14 +64,13 @@ fn known_by_points(
     obstacles: &Obstacles,
     (positions, contacts): (&[Vec3Lanes], &Contacts),
 ) -> Vec<f32> {
-    let heights = Heights::new(contacts, obstacles, volume.points_per_strand);
+    let heights = contacts.heights(obstacles, positions, volume.points_per_strand);
     let known = |(index, cell): (usize, &u32)| {
         let middle = volume.grid.center(*cell as usize);
         let points = volume.sort.points_of(index).iter().take(ASKED);
         let bounds = points.map(|point| {
             let (slot, lane) = (*point as usize / LANES, *point as usize % LANES);
-            let position = positions[slot].get(lane);
-            heights.at_least(slot, lane, position) - position.distance(middle)
+            heights[slot].0[lane] - positions[slot].get(lane).distance(middle)
         });
         bounds.fold(f32::NEG_INFINITY, f32::max) - ROUNDED
     };

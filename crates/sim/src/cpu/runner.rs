@@ -89,19 +89,20 @@ impl CpuRunner {
         }
         let (start, end) = (state.body.clone(), drive.body.clone());
         let time_step = model.settings.time_step;
-        let obstacles = Obstacles::after(&self.skins, &model.colliders, start, end, time_step);
-        self.skins.clone_from(obstacles.skins());
-        state.contacts.ride(&Solids::new(&obstacles, model.points_per_strand));
         let (wind, report) = (drive.wind, StepReport::default());
-        let mut step = Step { model, state, scratch, obstacles, drive, wind, report };
-        par::awake(|| {
+        let skins = &mut self.skins;
+        let report = par::awake(|| {
+            let obstacles = Obstacles::after(skins, &model.colliders, start, end, time_step);
+            skins.clone_from(obstacles.skins());
+            state.contacts.ride(&Solids::new(&obstacles, model.points_per_strand));
+            let mut step = Step { model, state, scratch, obstacles, drive, wind, report };
             for stage in stages(&model.settings) {
                 let watch = Stopwatch::start();
                 step.run(stage);
                 step.report.seconds.push((stage.name(), watch.seconds()));
             }
+            step.report
         });
-        let Step { report, .. } = step;
         state.volume_box = scratch.volume.as_ref().map(|volume| volume.grid.place_numbers());
         report
     }

@@ -178,11 +178,16 @@ impl WindBox {
         if obstacles.colliders.is_empty() {
             return;
         }
-        contents.par_chunks_mut(WIDE).enumerate().with_min_len(8).for_each(|(row, contents)| {
+        let places = |row: usize| {
             let first = self.axes.world(self.origin + (corner(row * WIDE) + 0.5) * self.edges);
-            let places = Places { first, step: self.axes.0[0] * self.edges.x, count: WIDE };
-            if let Some(sides) = obstacles.sides_along(places) {
-                return self.add_skin(obstacles, &places, sides, contents);
+            Places { first, step: self.axes.0[0] * self.edges.x, count: WIDE }
+        };
+        let rows = (0..contents.len() / WIDE).into_par_iter().with_min_len(8);
+        let sides: Vec<Option<Sides>> = rows.map(|row| obstacles.sides_along(places(row))).collect();
+        contents.par_chunks_mut(WIDE).enumerate().with_min_len(8).for_each(|(row, contents)| {
+            let (places, first) = (places(row), places(row).first);
+            if let Some(own) = sides[row] {
+                return self.add_skin(obstacles, &places, (own, deep(&sides, row)), contents);
             }
             let (mut near, mut least) = (PosedSkin::UNKNOWN, 0.0);
             for (column, content) in contents.iter_mut().enumerate() {
@@ -207,21 +212,30 @@ impl WindBox {
     }
 
     /// Marks the cells of a row by the sides of their middles of a skin that moves by itself. Its velocity is that of a triangle
-    /// about as near as the nearest: the search for that takes long far inside.
-    fn add_skin(&self, obstacles: &Obstacles, places: &Places, sides: Sides, contents: &mut [Content]) {
+    /// about as near as the nearest: the search for that takes long far inside. Air outside meets no cell of `deep`, one bit
+    /// each: these move as the triangle of the cell before them.
+    fn add_skin(
+        &self,
+        obstacles: &Obstacles,
+        places: &Places,
+        (sides, deep): (Sides, u64),
+        contents: &mut [Content],
+    ) {
         let mut near = PosedSkin::UNKNOWN;
-        let mut fill = |content: &mut Content, place: Vec3| {
-            obstacles.at_least(place, &mut near);
+        let mut fill = |content: &mut Content, place: Vec3, is_deep: bool| {
+            if !is_deep || near == PosedSkin::UNKNOWN {
+                obstacles.at_least(place, &mut near);
+            }
             self.fill(content, obstacles, place, &mut near);
         };
         for (column, content) in contents.iter_mut().enumerate() {
             if sides.inside & (1 << column) != 0 {
-                fill(content, places.first + places.step * column as f32);
+                fill(content, places.first + places.step * column as f32, deep & (1 << column) != 0);
             }
         }
         // The wind that enters may come from behind the skin.
         if contents[0].depth >= 0.0 && sides.behind <= CALM {
-            fill(&mut contents[0], places.first - self.axes.0[0] * sides.behind);
+            fill(&mut contents[0], places.first - self.axes.0[0] * sides.behind, false);
         }
     }
 
@@ -302,6 +316,15 @@ impl WindBox {
     }
 }
 
+/// The cells of a row that lie inside a skin as all cells around them do, one bit each; no air passes beyond the box.
+fn deep(sides: &[Option<Sides>], row: usize) -> u64 {
+    let around = |place: usize| place.saturating_sub(1)..(place + 2).min(WIDE);
+    let rows = around(row / WIDE).flat_map(|z| around(row % WIDE).map(move |y| z * WIDE + y));
+    let inside = |row: usize| sides[row].map_or(0, |sides| sides.inside);
+    let all = rows.fold((1 << WIDE) - 1, |all, row| all & inside(row));
+    all & (all << 1 | 1) & (all >> 1 | 1 << (WIDE - 1))
+}
+
 /// Place of a cell from the lower corner of the ring, in cells.
 fn corner(cell: usize) -> Vec3 {
     let rest = cell / WIDE;
@@ -311,4 +334,35 @@ fn corner(cell: usize) -> Vec3 {
 /// The next larger number whose binary digits behind the first three are 0: cells stay where they are as hair sways.
 fn eighths(number: f32) -> f32 {
     f32::from_bits((number.to_bits() + 0x000f_ffff) & !0x000f_ffff)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows of a skin whose cells have places within bounds, all three the same.
+    fn block(low: usize, high: usize) -> Vec<Option<Sides>> {
+        let holds = |place: usize| (low..=high).contains(&place);
+        let inside = (low..=high).fold(0, |inside, column| inside | 1 << column);
+        let row = |row: usize| if holds(row % WIDE) && holds(row / WIDE) { inside } else { 0 };
+        (0..WIDE * WIDE).map(|index| Some(Sides { inside: row(index), behind: 0.0 })).collect()
+    }
+
+    #[test]
+    fn deep_cells_have_cells_inside_all_around() {
+        let all = block(4, 9);
+        let count =
+            |rows: &[Option<Sides>]| (0..WIDE * WIDE).map(|row| deep(rows, row).count_ones()).sum::<u32>();
+        assert_eq!((count(&all), deep(&all, 5 * WIDE + 5)), (4 * 4 * 4, 0b1_1110_0000));
+        // Rows with a hole, and those where one cell is outside, leave no deep cells around.
+        let mut holed = all.clone();
+        holed[6 * WIDE + 6] = None;
+        assert_eq!(count(&holed), 4 * 7);
+        let mut notched = all;
+        notched[4 * WIDE + 4] = Some(Sides { inside: 0b11_1011_0000, behind: 0.0 });
+        assert_eq!((count(&notched), deep(&notched, 5 * WIDE + 5)), (64 - 3, 0b1_0000_0000));
+        // Nothing lies beyond the box.
+        assert_eq!(count(&block(0, WIDE - 1)), (WIDE * WIDE * WIDE) as u32);
+        assert_eq!(count(&block(0, 1)), 1);
+    }
 }
