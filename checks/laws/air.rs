@@ -209,3 +209,32 @@ law! {
         }
     }
 }
+
+law! {
+    fn a_strand_of_a_mass_of_its_own_is_blown_as_so_many_hairs(on) {
+        let points = line(Vec3::ZERO, Vec3::NEG_Y * 0.2, 12);
+        let blown_aside = |own: bool, hairs: u32, change: fn(&mut Settings)| {
+            let mut settings = airy(1.0 / 60.0, 40.0);
+            (settings.drag.shelter, settings.strands.rods.wisp_hairs) = (false, if own { 1 } else { hairs });
+            change(&mut settings);
+            let mut guides = one_strand(&points);
+            if own {
+                // Of as many hairs, which are no stiffer than one.
+                let of_hairs = hairs as f32 * settings.line_density();
+                let mass = RestShape::new(&guides, of_hairs).mass;
+                guides.set_masses(Some(mass.iter().map(|lanes| lanes.0[0]).collect())).unwrap();
+                settings.strands.rods.youngs_modulus *= hairs as f32;
+            }
+            let mut rig = Rig::new(on, Model::new(&guides, &settings, Vec::new()).unwrap());
+            rig.steps(&vec![blown(Vec3::X * 2.0); 60]);
+            first(rig.state()).last().unwrap().x
+        };
+        let alone = blown_aside(false, 1, |_| ());
+        for change in [|_: &mut Settings| (), |settings: &mut Settings| settings.drag.hairs = Some(50.0)] {
+            let [expected, found] = [false, true].map(|own| blown_aside(own, 5, change));
+            // Sections of a wisp are slower to turn than those of one hair.
+            assert!((found / expected - 1.0).abs() < 0.01, "{found}, expected {expected}");
+            assert!(found < 0.95 * alone, "a wisp is sheltered: {found}, a hair {alone}");
+        }
+    }
+}

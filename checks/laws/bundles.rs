@@ -21,7 +21,7 @@ fn settings() -> Settings {
     settings.strands.rods.rest = Rest::Unstressed;
     settings.strands.rods.wisp_hairs = 50;
     settings.contact.enabled = true;
-    settings.contact.hairs = Some((RADIUS / 4e-5).powi(2) * settings.contact.packing);
+    settings.contact.hairs = Some((RADIUS / 4e-5).powi(2) * settings.strands.rods.packing);
     settings
 }
 

@@ -106,6 +106,8 @@ law! {
         for (index, (of_all, of_group)) in own.into_iter().enumerate() {
             let mut all = base.clone();
             of_all(&mut all.strands.rods);
+            // It is no material: a group has that of all.
+            all.strands.rods.rubbing = base.strands.rods.rubbing;
             let [_, expected] = tips(&all);
             let mut group = GroupSettings { group: "7".to_owned(), ..GroupSettings::default() };
             of_group(&mut group);
@@ -149,7 +151,7 @@ law! {
 
 /// Droop \[m\] of a hair that bends little, as of a beam: the moment of what lies beyond each place over the
 /// stiffness there, twice summed. The first segment is held.
-fn beam(length: f64, points: usize, settings: &Settings) -> f64 {
+pub fn beam(length: f64, points: usize, settings: &Settings) -> f64 {
     let section = settings.strands.rods.material().section();
     let (start, pieces) = (length / (points - 1) as f64, 4000);
     let piece = (length - start) / f64::from(pieces);

@@ -42,3 +42,4 @@ mod styles;
 mod ties;
 mod transfer;
 mod volume;
+mod wet;

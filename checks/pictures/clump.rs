@@ -16,6 +16,7 @@ const STRAIGHT: Clump = Clump {
     shorter: 0.0,
     wave_amplitude: 0.0,
     wave_length: 0.06,
+    together: 0.0,
 };
 
 /// Number of guides.

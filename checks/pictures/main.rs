@@ -1,6 +1,7 @@
 //! Pictures: shape, light, and whole images.
 
 mod clump;
+mod coat;
 mod colors;
 mod coverage;
 mod crown;

@@ -616,7 +616,8 @@ class SimulationDrag(TypedDict, total=False):
 
 class SimulationStrandsRods(TypedDict, total=False):
     """Hair as rods: bending and twisting follow from what a hair is made of. Stiffness goes with the fourth power of
-    the radius, weight with its square. `hair` sets the defaults of what hair is made of, `radius` to `damping`."""
+    the radius, weight with its square. `hair` sets the defaults of what hair is made of, `radius` to `damping`, of
+    `rubbing`, and of the groom's shape where hair is wet."""
 
     hair: str
     """Kind of hair. Allowed: one of fine, medium, coarse, wet, sprayed."""
@@ -646,6 +647,10 @@ class SimulationStrandsRods(TypedDict, total=False):
     """Sharing of load among the hairs of a guide: 0 lets each bend by itself, so that n hairs are n times as stiff as
     one; 1 glues them to one, n^2 times; between, n^(1 + cohesion). Allowed: 0 to 1."""
 
+    packing: float
+    """Share of the section of a wisp that its hairs fill: the air meets no more of them than a cylinder as wide as
+    the wisp. Allowed: 0.01 to 1."""
+
     damping: float
     """Relaxation time of bends and twists: what they lag behind their rest. Allowed: 0 to 10 s."""
 
@@ -669,7 +674,7 @@ class SimulationStrandsRods(TypedDict, total=False):
     slow it loses 4 of its speed in a second at most. Allowed: 0 to 100 m/s^2."""
 
     rest: str
-    """Meaning of the groom's shape. Allowed: one of sag_free, unstressed."""
+    """Meaning of the groom's shape. Allowed: one of sag_free, unstressed, dry."""
 
     substeps: int
     """Parts of a step that are solved one after the other. Allowed: 1 to 64."""
@@ -829,6 +834,10 @@ class SimulationGroups(TypedDict, total=False):
     """Sharing of load among the hairs of a guide: 0 lets each bend by itself, so that n hairs are n times as stiff as
     one; 1 glues them to one, n^2 times; between, n^(1 + cohesion). Allowed: 0 to 1."""
 
+    packing: float
+    """Share of the section of a wisp that its hairs fill: the air meets no more of them than a cylinder as wide as
+    the wisp. Allowed: 0.01 to 1."""
+
     damping: float
     """Relaxation time of bends and twists: what they lag behind their rest. Allowed: 0 to 10 s."""
 
@@ -849,8 +858,8 @@ class SimulationGroups(TypedDict, total=False):
 
 class SimulationContact(TypedDict, total=False):
     """Contact of strands with each other, of rods on the CPU. A guide is the wisp of the hairs that it stands for: a
-    chain of capsules of radius r sqrt(hairs / packing), at most half of the room to the nearest strand at rest, so
-    that nothing presses at rest."""
+    chain of capsules of radius r sqrt(hairs / `strands.rods.packing`), at most half of the room to the nearest strand
+    at rest, so that nothing presses at rest."""
 
     enabled: bool
     """Strands push each other apart and rub. A GPU refuses it. Allowed: true or false."""
@@ -858,9 +867,6 @@ class SimulationContact(TypedDict, total=False):
     hairs: float
     """Hairs that a guide stands for. Without it those of the look over the guides in a scene, else
     `strands.rods.wisp_hairs`. Allowed: 1 to 1,000,000."""
-
-    packing: float
-    """Share of a wisp's section that hairs fill. Allowed: 0.01 to 1."""
 
     friction: float
     """Coulomb coefficient of strands that stick to each other. Allowed: 0 to 10."""
@@ -1057,6 +1063,24 @@ class LookClump(TypedDict, total=False):
     """Mean length of those waves. Allowed: 0.001 to 10 m."""
 
 
+class LookCoat(TypedDict, total=False):
+    """Water or lacquer on hair: it darkens hair, smooths its scales and draws strands together.
+    `simulation.strands.rods.hair` brings it along, whatever the look. Under the thesis's fibre the colours of strands
+    of a file stay."""
+
+    pigment: float
+    """Multiple of the pigment that light meets: the surface of a film throws light back into the hair. Allowed: 0.1
+    to 10."""
+
+    roughness: float
+    """Multiple of the roughness of hair along it, and of the noise of its highlights: a film fills the steps between
+    scales. Allowed: 0.1 to 2."""
+
+    gather: float
+    """Share by which strands come together on their way to the tips, each toward its guide. A scene takes it in for
+    strands that follow guides when it is loaded. Allowed: 0 to 1."""
+
+
 class LookShadow(TypedDict, total=False):
     """Shadows of hair and body [Yuksel2008]."""
 
@@ -1186,6 +1210,9 @@ class Look(TypedDict, total=False):
 
     clump: LookClump
     """Shape of follow strands about their guide [Chen2011 §3.2]."""
+
+    coat: LookCoat
+    """Water or lacquer on hair: it darkens hair, smooths its scales and draws strands together."""
 
     shadow: LookShadow
     """Shadows of hair and body [Yuksel2008]."""
@@ -1448,8 +1475,8 @@ class Film(TypedDict, total=False):
 
     settle: float
     """Time that passes with the head at rest before the first picture; none does before hair that begins in a pose.
-    Rods begin at rest and need none; with `method = "constrain"`, where hair sags at first, the default is 1.
-    Allowed: 0 to 3600 s."""
+    Rods begin at rest and need none; with `method = "constrain"`, where hair sags at first, the default is 1, and
+    with wet hair 2. Allowed: 0 to 3600 s."""
 
     start: float
     """Time of motion and wind at the beginning. Allowed: 0 to 1,000,000 s."""

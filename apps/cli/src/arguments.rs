@@ -125,7 +125,7 @@ pub struct Inputs {
     /// Turn the groom: degrees about x, y and z, y first, then x, then z; the body stays.
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
     pub turn: Option<Vec3>,
-    /// Material of the hair: fine, medium, coarse, wet or sprayed.
+    /// Kind of hair, how it moves and what is seen of it: fine, medium, coarse, wet or sprayed.
     #[arg(long, value_name = "NAME", value_parser = HairKind::from_str)]
     pub hair: Option<HairKind>,
     /// Colour of the hair: brown, black, blonde, red, copper, grey, white, blue, pink, violet, green, thesis, or a colour #rrggbb.

@@ -57,7 +57,7 @@ impl Inputs {
                             \"constrain\", expected \"rods\"";
                 return Err(Usage(mend.to_owned()).into());
             }
-            scene.simulation.strands.rods.set_hair(hair);
+            scene.set_hair(hair);
         }
         if let Some(look) = self.look {
             look.dress(&mut scene.look);

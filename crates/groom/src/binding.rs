@@ -42,10 +42,12 @@ mod influence;
 mod place;
 #[cfg(test)]
 mod tests;
+mod together;
 mod weights;
 
 pub use frames::Frames;
 pub use influence::{Influence, MOST_INFLUENCES};
+pub use together::closing;
 
 use frames::Frame;
 use influence::{Followed, blocks};

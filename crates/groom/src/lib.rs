@@ -24,7 +24,7 @@ mod unlike;
 pub mod format;
 pub mod root_ball;
 
-pub use binding::{Binding, Frames, Influence, MOST_INFLUENCES, Surface};
+pub use binding::{Binding, Frames, Influence, MOST_INFLUENCES, Surface, closing};
 pub use brush::{Stroke, Tool};
 pub use error::GroomError;
 pub use groom::{Groom, Widths};

@@ -14,6 +14,7 @@ pub mod gpu;
 
 mod body_look;
 mod camera;
+mod coat;
 mod error;
 mod fast_math;
 mod frame;
@@ -38,6 +39,7 @@ pub mod surroundings;
 
 pub use body_look::BodyLook;
 pub use camera::Camera;
+pub use coat::Coat;
 pub use cpu::Renderer;
 pub use error::RenderError;
 pub use frame::filter::resolve_linear;

@@ -6,6 +6,7 @@ use strandline_base::math;
 use strandline_base::{Key, Overrides, SettingError, Value, settings};
 
 use crate::Environment;
+use crate::coat::Coat;
 use crate::fibre::{Chiang, Fibre, FibreModel, Highlight, chiang::Pigment};
 use crate::preset::Preset;
 use crate::surroundings::Surroundings;
@@ -44,6 +45,8 @@ settings! {
         highlight_noise: f32 = 1.5, in [0.0, 45.0] "degrees", more "more ragged highlights";
         /// Shape of the drawn strands about their guide.
         clump: Clump = Clump::default();
+        /// Water or lacquer on the hair.
+        coat: Coat = Coat::default();
         /// Shadows of hair and body.
         shadow: Shadow = Shadow { layers: [0.005, 0.015, 0.05], ..Shadow::default() };
         /// Light from all around.
@@ -136,6 +139,10 @@ settings! {
         wave_amplitude: f32 = 0.001, in [0.0, 1.0] "m", slider [0.0, 0.01], more "more disorder";
         /// Mean length of those waves.
         wave_length: f32 = 0.06, in [1e-3, 10.0] "m", slider [0.01, 0.2], more "calmer waves";
+        plain {
+            /// Share of the radius by which a coat draws the strands together on their way to the tips.
+            together: f32,
+        }
     }
 }
 

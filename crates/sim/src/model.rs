@@ -201,10 +201,10 @@ impl Model {
                 lengths: &self.rest.stretch,
             };
             rest.radii(|strand, share| {
-                let traits = self.hairs.traits(strand);
+                let traits = &self.rods.as_ref().expect("contacts are of rods").traits[strand];
                 let hairs = contact.hairs.unwrap_or(traits.hairs);
                 let thinner = self.hairs.section(strand).along.radius(f64::from(share)) as f32;
-                0.5 * traits.diameter * thinner * (hairs / contact.packing).sqrt()
+                0.5 * traits.diameter * thinner * (hairs / traits.packing).sqrt()
             })
         } else {
             Vec::new()
@@ -223,6 +223,7 @@ impl Model {
             positions: &self.positions,
             inverse_mass: &self.inverse_mass,
             mass: &self.rest.mass,
+            weighed: self.weighed,
             gravity: self.settings.gravity,
         }
     }
@@ -230,7 +231,7 @@ impl Model {
     /// The nodes of rods with lengths of segments \[m\] and masses of points \[kg\] of their own; none with another
     /// strand solver.
     pub(crate) fn nodes_with(&self, lengths: &RestShape, mass: &[Lanes]) -> Option<Vec<Node<f32x8>>> {
-        let carries = self.settings.strands.rods.rest == Rest::SagFree;
+        let carries = self.settings.strands.rods.rest != Rest::Unstressed;
         let strands = Lengthened {
             points_per_strand: self.points_per_strand,
             positions: &self.positions,
@@ -238,6 +239,7 @@ impl Model {
             now: &lengths.stretch,
             mass,
             gravity: carries.then_some(self.settings.gravity),
+            hairs: &self.hairs,
         };
         let mut nodes = self.rods.as_ref()?.nodes.clone();
         strands.change(&mut nodes);
@@ -278,7 +280,7 @@ impl Model {
         if change.rest_shape || change.masses || change.buffers {
             self.compile_rods();
         }
-        if change.stages || change.masses || change.buffers {
+        if change.stages || change.rest_shape || change.masses || change.buffers {
             self.pack();
             self.thicken();
         }

@@ -67,7 +67,7 @@ impl Settings {
     /// Parts of a model, a runner and its state that a change to other settings invalidates.
     pub fn change_to(&self, other: &Self) -> Invalidates {
         // A shape that is an equilibrium carries its gravity.
-        let carries = other.has_rods() && other.strands.rods.rest == Rest::SagFree;
+        let carries = other.has_rods() && other.strands.rods.rest != Rest::Unstressed;
         let rest_shape = carries && self.gravity != other.gravity;
         let change = Value::change_to(self, other, &Row::NONE);
         change.and(Invalidates { rest_shape, ..Invalidates::NOTHING })
@@ -112,6 +112,8 @@ impl Settings {
 
     /// Files of before had the settings of constrained strands beside those of all.
     fn take_moved(&mut self, given: &<Self as Value>::Given) {
+        let packing = given.contact.as_ref().and_then(|contact| contact.packing);
+        self.strands.rods.packing = packing.unwrap_or(self.strands.rods.packing);
         let constrain = &mut self.strands.constrain;
         constrain.iterations = given.iterations.unwrap_or(constrain.iterations);
         constrain.mass_per_length = given.mass_per_length.unwrap_or(constrain.mass_per_length);

@@ -6,6 +6,7 @@ use wide::f32x8;
 
 use crate::Model;
 use crate::strands::rods::air::{DENSITY, Wisp};
+use crate::strands::rods::hairs::Traits;
 
 /// Cells along each axis, without the ring around them.
 pub(crate) const SIDE: usize = 16;
@@ -52,16 +53,18 @@ pub(crate) fn most_speed_sum(model: &Model) -> f32 {
 /// Whole numbers in a square metre of drag area.
 pub(crate) fn per_area(model: &Model) -> f32 {
     let Some(rods) = &model.rods else { return 1.0 };
-    let wisps =
-        rods.traits.iter().map(|traits| (traits.diameter, model.settings.drag.hairs.unwrap_or(traits.hairs)));
+    let own = |traits: &Traits| model.settings.drag.hairs.unwrap_or(traits.hairs);
+    let wisps = rods.traits.iter().map(|traits| [traits.diameter, own(traits), traits.packing]);
     // Strands of one kind lie one behind the other.
-    let (mut last, mut largest) = ((0.0, 0.0), 0.0);
+    let (mut last, mut largest) = ([0.0; 3], 0.0);
     for wisp in wisps {
         if wisp != last {
             last = wisp;
-            let [diameter, hairs] = [wisp.0, wisp.1].map(f64::from);
+            let [diameter, hairs, packing] = wisp.map(f64::from);
+            // As a file has it, not as the nearest number of single precision.
+            let packing = (1e4 * packing).round() / 1e4;
             let slow = f64::from(LEAST_SPEED);
-            largest = Wisp::new(diameter, hairs, hairs).drag(slow)[0].max(largest);
+            largest = Wisp::new(diameter, hairs, hairs, packing).drag(slow)[0].max(largest);
         }
     }
     let lengths = model.rest.stretch.iter().fold(f32x8::ZERO, |sum, lanes| sum + load(lanes));

@@ -51,8 +51,8 @@ pub mod settings {
 /// Sections of `[look]` and of pictures.
 pub mod look {
     pub use crate::render::{
-        Background, BodyLook, Clump, Environment, FrameReport, GroupLook, LevelOfDetail, LightKind, Preset,
-        ToneMap, fibre, surroundings,
+        Background, BodyLook, Clump, Coat, Environment, FrameReport, GroupLook, LevelOfDetail, LightKind,
+        Preset, ToneMap, fibre, surroundings,
     };
 }
 

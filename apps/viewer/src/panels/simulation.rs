@@ -19,8 +19,9 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     let before = app.scene.simulation.clone();
     let (settings, base) = (&mut app.scene.simulation, &app.base.simulation);
     strands(settings, base, ui);
+    let mut chosen = None;
     match settings.strands.method {
-        StrandMethod::Rods => rods(&mut settings.strands.rods, &base.strands.rods, ui),
+        StrandMethod::Rods => chosen = rods(&mut settings.strands.rods, &base.strands.rods, ui),
         StrandMethod::Constrain => {
             let (constrain, base) = (&mut settings.strands.constrain, &base.strands.constrain);
             bends(constrain, base, ui);
@@ -33,6 +34,11 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     }
     if app.scene.simulation != before {
         app.live.send(Change::Settings(Box::new(app.scene.simulation.clone())));
+    }
+    if let Some(hair) = chosen {
+        let mut scene = app.own_scene();
+        scene.set_hair(hair);
+        app.apply(scene);
     }
 }
 
@@ -52,18 +58,18 @@ fn strands(settings: &mut Settings, base: &Settings, ui: &mut Ui) {
     }
 }
 
-fn rods(rods: &mut RodSettings, base: &RodSettings, ui: &mut Ui) {
+/// Shows the settings of rods. Returns the kind of hair that was chosen, if one was.
+fn rods(rods: &mut RodSettings, base: &RodSettings, ui: &mut Ui) -> Option<HairKind> {
     let rows = &RodSettings::ROWS;
     let mut hair = rods.hair;
-    if choose(ui, (&mut hair, base.hair), &HairKind::ALL, &rows.hair, "hair") {
-        rods.set_hair(hair);
-    }
+    let chosen = choose(ui, (&mut hair, base.hair), &HairKind::ALL, &rows.hair, "hair").then_some(hair);
     slide(ui, (&mut rods.radius, base.radius), &rows.radius, "radius, um");
     slide(ui, (&mut rods.youngs_modulus, base.youngs_modulus), &rows.youngs_modulus, "stiffness, GPa");
     slide(ui, (&mut rods.density, base.density), &rows.density, "density, kg/m^3");
     slide(ui, (&mut rods.load, base.load), &rows.load, "load");
     slide(ui, (&mut rods.wisp_hairs, base.wisp_hairs), &rows.wisp_hairs, "hairs of a guide");
     slide(ui, (&mut rods.cohesion, base.cohesion), &rows.cohesion, "cohesion");
+    slide(ui, (&mut rods.packing, base.packing), &rows.packing, "packing");
     slide(ui, (&mut rods.tip_radius, base.tip_radius), &rows.tip_radius, "tip's radius");
     for (place, name) in ["stiffness at root", "in the middle", "at the tip"].into_iter().enumerate() {
         slide(ui, (&mut rods.profile[place], base.profile[place]), &rows.profile, name);
@@ -71,6 +77,7 @@ fn rods(rods: &mut RodSettings, base: &RodSettings, ui: &mut Ui) {
     slide(ui, (&mut rods.damping, base.damping), &rows.damping, "bend damping, s");
     slide(ui, (&mut rods.substeps, base.substeps), &rows.substeps, "substeps");
     slide(ui, (&mut rods.newton_steps, base.newton_steps), &rows.newton_steps, "Newton steps");
+    chosen
 }
 
 fn bends(settings: &mut ConstrainSettings, base: &ConstrainSettings, ui: &mut Ui) {

@@ -186,3 +186,41 @@ fn guides_that_are_none_are_refused() {
     let wrong = Binding::new(&groom, &[1, 2], all.clone(), resample(&groom.select(&[1])));
     assert!(wrong.unwrap_err().to_string().contains("2 guides for 400 strands"));
 }
+
+#[test]
+fn strands_drawn_together_end_at_the_guide_that_they_follow_most() {
+    let groom = groom();
+    let loose = bound(&groom, &groom.representatives(30));
+    let most = |binding: &Binding, strand: usize| {
+        let of = binding.influences()[strand];
+        of.into_iter().reduce(|most, one| if one.weight > most.weight { one } else { most }).unwrap()
+    };
+    let distance = |binding: &Binding, strand: usize, point: usize| {
+        let guide = most(&loose, strand).guide as usize;
+        binding.strands().position(strand, point).distance(binding.guides().position(guide, point))
+    };
+    let half = bound(&groom, &groom.representatives(30)).together(0.5);
+    let whole = bound(&groom, &groom.representatives(30)).together(1.0);
+    for strand in 0..groom.strand_count() {
+        let root = binding_root(&loose, strand);
+        assert_eq!(binding_root(&whole, strand), root, "roots stay");
+        let tips = [&loose, &half, &whole].map(|binding| distance(binding, strand, POINTS - 1));
+        // Longer and shorter strands end beside the guide's tip.
+        let apart = 0.1 * (most(&loose, strand).pace - 1.0).abs() + 1e-5;
+        assert!(tips[2] < 2.0 * apart, "{strand}: {tips:?}");
+        assert!((tips[1] - 0.5 * tips[0]).abs() < 2.0 * apart, "{strand}: {tips:?}");
+        assert!((most(&whole, strand).weight - 1.0).abs() < 1e-6);
+        let sum: f32 = half.influences()[strand].iter().map(|one| one.weight).sum();
+        assert!((sum - 1.0).abs() < 1e-5, "{strand}: weights sum to {sum}");
+    }
+    // Carried at rest they are where they rest.
+    let found = places(&half, half.guides().positions(), &BodyFrame::REST);
+    for strand in 0..groom.strand_count() {
+        let place = found[strand / LANES * POINTS + POINTS - 1].get(strand % LANES);
+        assert!(place.distance(half.strands().position(strand, POINTS - 1)) < 3e-6, "{strand}");
+    }
+}
+
+fn binding_root(binding: &Binding, strand: usize) -> Vec3 {
+    binding.strands().position(strand, 0)
+}

@@ -89,6 +89,8 @@ impl Renderer {
         input: &FrameInput,
         picture: &mut Picture,
     ) -> Result<FrameReport, RenderError> {
+        let look = input.look.under_coat();
+        let input = &FrameInput { look: &look, ..*input };
         let mut report = self.run(input, Some(picture))?;
         if self.settings.layers {
             let lights = at_samples(input.lights, input.look.suns());
@@ -102,7 +104,8 @@ impl Renderer {
     /// # Errors
     /// A setting outside its range; more memory than may be taken.
     pub fn draw_samples(&mut self, input: &FrameInput) -> Result<FrameReport, RenderError> {
-        self.run(input, None)
+        let look = input.look.under_coat();
+        self.run(&FrameInput { look: &look, ..*input }, None)
     }
 
     /// Runs the stages of a frame, the last where there is a picture for it.

@@ -190,6 +190,8 @@ impl GpuRenderer {
         picture: &mut Picture,
     ) -> Result<FrameReport, RenderError> {
         self.gpu.check_wait("a picture in memory")?;
+        let look = input.look.under_coat();
+        let input = &FrameInput { look: &look, ..*input };
         let own = match self.own.take() {
             Some(own) => own,
             None => Own::new(&self.gpu, &self.settings)?,
@@ -233,7 +235,8 @@ impl GpuRenderer {
     ) -> Result<(FrameReport, wgpu::SubmissionIndex), RenderError> {
         input.validate()?;
         let (given, lights) = (input.lights, at_samples(input.lights, input.look.suns()));
-        let input = &FrameInput { lights: &lights, ..*input };
+        let look = input.look.under_coat();
+        let input = &FrameInput { look: &look, lights: &lights, ..*input };
         self.points.check(&self.gpu, &self.groom, input, points)?;
         input.check_body(self.skin.vertex_count())?;
         self.skin.take(input.body, &self.groom.vertices)?;

@@ -1,6 +1,7 @@
 //! Clump radii along strands, and how much wider drawn strands are than hairs.
 
 use strandline_base::math;
+use strandline_groom::closing;
 
 use crate::Look;
 use crate::look::Clump;
@@ -13,7 +14,9 @@ const WIDER: f32 = 4.0;
 /// Clump radius \[m\] at each parameter, 0 to 1.
 pub(crate) fn tapers(parameters: &[f32], clump: &Clump) -> Vec<f32> {
     let radius = |share: &f32| {
-        clump.root_radius + (clump.tip_radius - clump.root_radius) * math::powf(*share, clump.taper)
+        let loose =
+            clump.root_radius + (clump.tip_radius - clump.root_radius) * math::powf(*share, clump.taper);
+        loose * (1.0 - clump.together * closing(*share))
     };
     parameters.iter().map(radius).collect()
 }

@@ -117,7 +117,7 @@ mod tests {
         let across = load(Vec3::Y);
         let radius = 1e-6 * f64::from(model.settings.strands.rods.radius);
         let weight = 9.81 * 1300.0 * std::f64::consts::PI * radius * radius;
-        let [force, _] = crate::strands::rods::air::Wisp::new(2.0 * radius, 1.0, 1.0).drag(1.0);
+        let [force, _] = crate::strands::rods::air::Wisp::new(2.0 * radius, 1.0, 1.0, 0.3).drag(1.0);
         assert!(
             (f64::from(across.mean) / (force / weight) - 1.0).abs() < 0.05,
             "{across:?}, {}",

@@ -47,6 +47,7 @@ impl Air {
                 of_lanes(strands, |strand| strand.diameter),
                 hairs,
                 of_lanes(strands, |strand| strand.hairs),
+                of_lanes(strands, |strand| strand.packing),
             ),
             thinner: of_lanes(strands, |strand| strand.tip) - splat(1.0),
             start,

@@ -189,9 +189,9 @@ impl Buffers {
         buffers.nodes.write(&numbers)?;
         let traits = model.rods.iter().flat_map(|rods| &rods.traits);
         let numbers_of = |one: &Traits| -> [f32; TRAITS] {
-            let Traits { bend_ratio, twist_ratio, damping, crowding, diameter, tip, taper_start, hairs } =
-                *one;
-            [bend_ratio, twist_ratio, damping, crowding, diameter, tip, taper_start, hairs]
+            let Traits { bend_ratio, twist_ratio, damping, crowding, diameter, tip, taper_start, .. } = *one;
+            let Traits { hairs, packing, .. } = *one;
+            [bend_ratio, twist_ratio, damping, crowding, diameter, tip, taper_start, hairs, packing]
         };
         let traits: Vec<f32> = traits.flat_map(numbers_of).collect();
         // The grips lie before them.

@@ -7,7 +7,7 @@ use super::air_buffers::ShelterBuffers;
 /// Numbers of a node in the buffer of rods.
 pub(super) const NUMBERS: usize = 10;
 /// Numbers of the traits of a strand.
-pub(super) const TRAITS: usize = 8;
+pub(super) const TRAITS: usize = 9;
 /// Vectors of four numbers that a point takes while its strand is solved.
 const SLOTS: usize = 19;
 

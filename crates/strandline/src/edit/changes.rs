@@ -2,7 +2,7 @@
 
 use toml::{Table, Value};
 
-use crate::{Change, PictureSettings, Scene};
+use crate::{Change, Look, PictureSettings, Scene};
 
 /// The changes of hair that plays which lead from one scene to another; `None` where the other has to be loaded. The size
 /// of the pictures, which is that of a window, stays.
@@ -22,11 +22,11 @@ pub fn changes(from: &Scene, to: &Scene) -> Option<Vec<Change>> {
     let PictureSettings { width, height, .. } = from.picture;
     near.picture = PictureSettings { width, height, ..to.picture };
     let sized = Scene { picture: near.picture, ..to.clone() };
-    // Maps, groups and the file of a motion are taken in when a scene is loaded.
-    let look = (&from.look.color_map, &from.look.width_map, &from.look.group);
-    let is_near = near == sized
-        && look == (&to.look.color_map, &to.look.width_map, &to.look.group)
-        && from.motion.file == to.motion.file;
+    // Maps, groups, locks and the file of a motion are taken in when a scene is loaded.
+    let loaded =
+        |look: &Look| (look.color_map.clone(), look.width_map.clone(), look.group.clone(), look.coat.gather);
+    let is_near =
+        near == sized && loaded(&from.look) == loaded(&to.look) && from.motion.file == to.motion.file;
     is_near.then(|| {
         let mut changes = Vec::new();
         let mut add = |differs: bool, change: &dyn Fn() -> Change| {

@@ -182,7 +182,7 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
             // The note about the guides stands for these too, which are near them.
             guides::move_outside(&mut all, &start, &colliders, Shape::clearance);
             let binding = Binding::new(&groom, &chosen, all, guides.clone())?;
-            Some(BoundStrands::new(binding, colliders.clone()))
+            Some(BoundStrands::new(binding.together(scene.look.coat.gather), colliders.clone()))
         }
     };
     let shape = [guides.strand_count(), guides.points_per_strand()];

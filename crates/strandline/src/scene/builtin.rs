@@ -8,8 +8,11 @@ use super::{FilmSection, GroomSection, MotionName, Scene};
 use crate::{
     Error,
     groom::{Style, StyleSettings},
-    render::{Background, LevelOfDetail, Preset, ToneMap},
-    sim::Settings,
+    render::{Background, Coat, LevelOfDetail, Preset, ToneMap},
+    sim::{
+        Settings, StrandMethod,
+        rods::{HairKind, Rest},
+    },
 };
 
 impl Scene {
@@ -45,6 +48,25 @@ impl Scene {
             self.look.hair_count = hairs(style);
         }
         self.look.follow_strands = filling(strand_count, self.groom.bound);
+    }
+
+    /// Sets a kind of hair: its material as rods, and what is seen of it (`look.coat`). Hair that is wet droops before the film
+    /// begins (`film.settle`).
+    pub fn set_hair(&mut self, hair: HairKind) {
+        let rods = &mut self.simulation.strands.rods;
+        let drooped = rods.rest == Rest::Dry;
+        rods.set_hair(hair);
+        let droops = rods.rest == Rest::Dry && self.simulation.strands.method == StrandMethod::Rods;
+        if droops {
+            self.film.settle = self.film.settle.max(FilmSection::DROOP);
+        } else if drooped && self.film.settle == FilmSection::DROOP {
+            self.film.settle = FilmSection::default().settle;
+        }
+        self.look.coat = match hair {
+            HairKind::Fine | HairKind::Medium | HairKind::Coarse => Coat::NONE,
+            HairKind::Wet => Coat::WATER,
+            HairKind::Sprayed => Coat::LACQUER,
+        };
     }
 
     /// Sets tone map and background that go with the look of the thesis.

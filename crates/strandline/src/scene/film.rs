@@ -128,7 +128,7 @@ settings! {
         frames_per_second: f32 = 30.0, in [1.0, 1000.0] "1/s", more "smoother motion, more pictures";
         /// Time that passes with the head at rest before the first picture; none does before hair that
         /// begins in a pose. Rods begin at rest and need none; with `method = "constrain"`, where hair sags at
-        /// first, the default is 1.
+        /// first, the default is 1, and with wet hair 2.
         settle: f32 = 0.0, in [0.0, 3600.0] "s", more "hair that has come further to rest";
         /// Time of motion and wind at the beginning.
         start: f64 = 0.0, in [0.0, 1e6] "s";
@@ -138,4 +138,6 @@ settings! {
 impl FilmSection {
     /// Time \[s\] in which strands come to hang that do not begin at rest.
     pub const SETTLE: f32 = 1.0;
+    /// Time \[s\] in which a dry groom droops when it is wetted.
+    pub const DROOP: f32 = 2.0;
 }

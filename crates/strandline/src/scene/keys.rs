@@ -136,6 +136,8 @@ impl Scene {
         if strands.and_then(|strands| strands.method) == Some(StrandMethod::Constrain) {
             self.film.settle = FilmSection::SETTLE;
         }
+        let rods = strands.and_then(|strands| strands.rods.as_ref());
+        rods.and_then(|rods| rods.hair).into_iter().for_each(|hair| self.set_hair(hair));
         let groom = given.groom.as_ref().is_some_and(|groom| groom.file.is_some());
         if groom || given.body.as_ref().is_some_and(|body| body.file.is_some()) {
             self.begin_at_rest();

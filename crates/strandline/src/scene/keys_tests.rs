@@ -1,7 +1,12 @@
 use glam::Vec3;
 
 use super::*;
-use crate::{Style, render::LightKind, scene::MotionName};
+use crate::{
+    Style,
+    render::{Coat, LightKind},
+    scene::MotionName,
+    sim::rods::Rest,
+};
 
 fn refused(key: &str, value: &str) -> String {
     let mut scene = full();
@@ -132,6 +137,36 @@ fn words_bring_along_what_they_bring_in_a_file() {
     assert!(scene.given.follow_strands == file.given.follow_strands);
     scene.set("look.follow_strands", "3").unwrap();
     assert!(scene.given.follow_strands, "a groom does not choose it");
+}
+
+#[test]
+fn a_kind_of_hair_brings_its_look_and_time_to_droop_and_leaves_what_is_given() {
+    let key = "simulation.strands.rods.hair";
+    for (hair, coat) in [("medium", Coat::NONE), ("wet", Coat::WATER), ("sprayed", Coat::LACQUER)] {
+        let mut set = Scene::default();
+        set.set(key, hair).unwrap();
+        assert_eq!(set, Scene::parse(&format!("{key} = \"{hair}\""), "scene").unwrap());
+        assert_eq!(set.look.coat, coat);
+        assert_eq!(set.film.settle > 0.0, hair == "wet", "{hair}");
+        // A preset of the look leaves it.
+        set.set("look.preset", "black").unwrap();
+        assert_eq!(set.look.coat, coat);
+        set.set(key, "medium").unwrap();
+        let mut black = Scene::default();
+        black.set("look.preset", "black").unwrap();
+        black.set(key, "medium").unwrap();
+        assert_eq!(set, black);
+    }
+    let text = "look.coat.gather = 0.1\nfilm.settle = 0.5\n[simulation.strands.rods]\nhair = \"wet\"\nload = 0.05\nrest = \"sag_free\"";
+    let own = Scene::parse(text, "scene").unwrap();
+    assert_eq!(own.look.coat, Coat { gather: 0.1, ..Coat::WATER });
+    let rods = own.simulation.strands.rods;
+    assert_eq!((rods.load, rods.rest, own.film.settle), (0.05, Rest::SagFree, 0.5));
+    // Written whole and read again it stays.
+    assert_eq!(Scene::parse(&own.to_toml(), "scene").unwrap(), own);
+    // Older files have the share of a wisp beside the settings of contact.
+    let older = Scene::parse("simulation.contact.packing = 0.5", "scene").unwrap();
+    assert_eq!(older.simulation.strands.rods.packing, 0.5);
 }
 
 #[test]

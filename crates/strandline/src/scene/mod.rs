@@ -139,6 +139,8 @@ impl Scene {
         if strands.and_then(|strands| strands.method) == Some(StrandMethod::Constrain) {
             self.film.settle = FilmSection::SETTLE;
         }
+        let rods = strands.and_then(|strands| strands.rods.as_ref());
+        rods.and_then(|rods| rods.hair).into_iter().for_each(|hair| self.set_hair(hair));
         self.given = Given {
             follow_strands: look.is_some_and(|look| look.follow_strands.is_some()),
             hair_count: look.is_some_and(|look| look.hair_count.is_some()),

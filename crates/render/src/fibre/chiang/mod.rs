@@ -49,6 +49,10 @@ settings! {
         scatterings: u32 = 64, in [0, 64], slider [0, 64], more "brighter light hair, at a cost";
         /// Cells that scattered light is carried through, along the longest side of the hair.
         cells: u32 = MOST_CELLS, in [8, MOST_CELLS], more "sharper scattered light, at a cost";
+        plain {
+            /// Share of the pigment that a coat adds to it.
+            further_pigment: f32,
+        }
     }
 }
 
@@ -94,7 +98,7 @@ impl Chiang {
         match self.pigment {
             Pigment::Melanin => {
                 let [eumelanin, pheomelanin] = [self.eumelanin, self.pheomelanin].map(f64::from);
-                (eumelanin * EUMELANIN + pheomelanin * PHEOMELANIN).to_array()
+                (self.pigment_times() * (eumelanin * EUMELANIN + pheomelanin * PHEOMELANIN)).to_array()
             }
             Pigment::Color => self.absorption_of_color(color),
         }
@@ -105,6 +109,17 @@ impl Chiang {
         color
             .to_array()
             .map(|c| (math::ln(f64::from(c.clamp(LEAST_COLOR, 1.0))) / self.color_scale()).powi(2))
+            .map(|sigma| self.pigment_times() * sigma)
+    }
+
+    /// Multiple of the pigment by the coat.
+    fn pigment_times(&self) -> f64 {
+        1.0 + f64::from(self.further_pigment)
+    }
+
+    /// Divisor of the logarithm of a colour that gives the root of its pigment under the coat.
+    pub(crate) fn ink_scale(&self) -> f64 {
+        self.color_scale() / self.pigment_times().sqrt()
     }
 
     /// Divisor of the logarithm of such a colour.
@@ -126,7 +141,7 @@ impl Chiang {
 
     /// Multiples of [`INK`] of hair that shows a colour.
     pub(crate) fn inks(&self, color: Vec3) -> Vec3 {
-        let inverse = (1.0 / self.color_scale()) as f32;
+        let inverse = (1.0 / self.ink_scale()) as f32;
         let roots = color.clamp(Vec3::splat(LEAST_COLOR), Vec3::ONE).map(|c| math::ln(c) * inverse);
         roots * roots * (1.0 / INK as f32)
     }

@@ -294,7 +294,7 @@ impl Made {
         let Source { fibre, darkest, lightest, .. } = self.from;
         let albedos: Vec<Vec3> = self.lattice.albedos().map(Vec4::truncate).collect();
         let [dark, light] = [albedos[0], albedos[albedos.len() - 1]];
-        let scale = fibre.color_scale() as f32;
+        let scale = fibre.ink_scale() as f32;
         let single = [table.floor, albedos.len() as f32, fibre.tip_pigment, scale];
         let vectors = [dark, light, darkest, self.from.of_darkest(lightest)];
         let Inclination { kept, drawn } = *self.lattice.inclination();

@@ -9,8 +9,6 @@ pub(crate) const VISCOSITY: f64 = 1.8e-5;
 const SLOWEST: f64 = 0.1;
 /// Reynolds number beyond which the force goes with the speed again, so that every speed has a finite force.
 const FASTEST: f64 = 1e5;
-/// Share of the section of a wisp that its hairs fill.
-pub(crate) const PACKING: f64 = 0.3;
 /// Drag coefficient 11 / Re^(3/4) + 0.95 of a cylinder across a flow, as the force over viscosity and speed: within 3 % of
 /// [Cheng2013] for Reynolds numbers of 0.1 to 100.
 const SLOW: f64 = 5.5;
@@ -35,10 +33,11 @@ pub struct Wisp<R> {
 }
 
 impl<R: Real> Wisp<R> {
-    /// A wisp of a number of hairs of a diameter \[m\], whose guide has the mass of a number of them.
+    /// A wisp of a number of hairs of a diameter \[m\], which fill a share of its section, and whose guide has the mass of
+    /// a number of them.
     #[inline(always)]
-    pub fn new(diameter: R, hairs: R, massive: R) -> Self {
-        let wider = (hairs * R::of(1.0 / PACKING)).root();
+    pub fn new(diameter: R, hairs: R, massive: R, packing: R) -> Self {
+        let wider = (hairs * (R::of(1.0) / packing)).root();
         Self { diameter, hairs, share: massive / hairs, wider, wider_root: wider.root().root() }
     }
 
@@ -77,6 +76,10 @@ impl<R: Real> Wisp<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rods::RodSettings;
+
+    /// Share of a wisp of dry hair that its hairs fill.
+    const LOOSE: f64 = 0.3;
 
     /// Force \[N/m\] on a metre of hair with a diameter \[m\] at a speed \[m/s\], with [Cheng2013]'s coefficient.
     fn tabled(diameter: f64, speed: f64) -> f64 {
@@ -91,7 +94,7 @@ mod tests {
     fn a_lone_hair_has_the_force_of_a_cylinder() {
         for diameter in [50e-6, 80e-6, 120e-6] {
             for speed in [0.5, 1.0, 3.0, 10.0] {
-                let [across, along] = Wisp::new(diameter, 1.0, 1.0).drag(speed);
+                let [across, along] = Wisp::new(diameter, 1.0, 1.0, LOOSE).drag(speed);
                 let ratio = across * speed / tabled(diameter, speed);
                 assert!((ratio - 1.0).abs() < 0.03, "{diameter} m, {speed} m/s: {ratio}");
                 // From half in Stokes' flow down to a quarter of a coarse hair in a storm.
@@ -99,7 +102,7 @@ mod tests {
             }
         }
         // Stokes' flow: a force that goes with the speed.
-        let slow = |speed: f64| Wisp::new(80e-6, 1.0, 1.0).drag(speed)[0];
+        let slow = |speed: f64| Wisp::new(80e-6, 1.0, 1.0, LOOSE).drag(speed)[0];
         assert_eq!(slow(1e-3), slow(1e-9));
         assert!((slow(0.0) - 5.6e-5).abs() < 1e-6, "{}", slow(0.0));
         assert!(slow(1e30).is_finite());
@@ -108,13 +111,20 @@ mod tests {
     #[test]
     fn the_air_reaches_few_hairs_of_a_wisp() {
         let reached = |hairs: f64| {
-            Wisp::new(80e-6, hairs, hairs).drag(1.0)[0] / (hairs * Wisp::new(80e-6, 1.0, 1.0).drag(1.0)[0])
+            Wisp::new(80e-6, hairs, hairs, LOOSE).drag(1.0)[0]
+                / (hairs * Wisp::new(80e-6, 1.0, 1.0, LOOSE).drag(1.0)[0])
         };
         assert_eq!(reached(1.0), 1.0);
         assert!((reached(50.0) - 0.085).abs() < 0.01, "{}", reached(50.0));
         // A guide with the mass of one of them has the force on one.
-        let [all, one] = [50.0, 1.0].map(|massive| Wisp::new(80e-6, 50.0, massive).drag(1.0)[0]);
+        let [all, one] = [50.0, 1.0].map(|massive| Wisp::new(80e-6, 50.0, massive, LOOSE).drag(1.0)[0]);
         assert!((all / one - 50.0).abs() < 1e-9, "{}", all / one);
         assert!(reached(10.0) > reached(50.0) && reached(50.0) > reached(1000.0));
+        // Twice as dense wisps are sqrt(2) times as thin.
+        let [loose, dense] =
+            [LOOSE, 2.0 * LOOSE].map(|packing| Wisp::new(80e-6, 50.0, 50.0, packing).drag(1.0)[0]);
+        assert!((1.2..1.42).contains(&(loose / dense)), "{}", loose / dense);
+        // The numbers of single precision, in which the default has no other bits than a constant.
+        assert_eq!(1.0 / RodSettings::default().packing, (1.0 / LOOSE) as f32);
     }
 }

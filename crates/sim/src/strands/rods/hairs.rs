@@ -8,7 +8,8 @@ use strandline_groom::Guides;
 
 use super::crowding::crowding;
 use super::material::Section;
-use super::settings::{GroupSettings, RodSettings};
+use super::rest::Former;
+use super::settings::{GroupSettings, Rest, RodSettings};
 use crate::SimError;
 
 /// Properties of a hair that are constant along it.
@@ -27,16 +28,20 @@ pub(crate) struct Traits {
     pub taper_start: f32,
     /// Hairs that weigh and resist together.
     pub hairs: f32,
+    /// Share of the section of a wisp that its hairs fill.
+    pub packing: f32,
 }
 
 /// Material of a strand.
 #[derive(Clone, Copy)]
 struct Hair {
     section: Section,
+    former: Former,
     damping: f32,
     /// \[m\]
     diameter: f32,
     hairs: f32,
+    packing: f32,
 }
 
 impl Hair {
@@ -44,9 +49,14 @@ impl Hair {
         let material = rods.material();
         Self {
             section: material.section(),
+            former: match rods.rest {
+                Rest::SagFree | Rest::Unstressed => Former::SAME,
+                Rest::Dry => Former::new(&rods.dry().material().section(), &material.section()),
+            },
             damping: rods.damping,
             diameter: material.diameter() as f32,
             hairs: material.hairs as f32,
+            packing: rods.packing,
         }
     }
 }
@@ -104,9 +114,14 @@ impl Hairs {
         self.hair(strand).section
     }
 
+    /// The hair of a strand when it took the groom's shape.
+    pub fn former(&self, strand: usize) -> Former {
+        self.hair(strand).former
+    }
+
     /// Properties of a strand's hair that are constant along it.
     pub fn traits(&self, strand: usize) -> Traits {
-        let Hair { section, damping, diameter, hairs } = self.hair(strand);
+        let Hair { section, damping, diameter, hairs, packing, .. } = self.hair(strand);
         Traits {
             bend_ratio: (section.bend[1] / section.bend[0]) as f32,
             twist_ratio: (section.twist / section.bend[0]) as f32,
@@ -116,6 +131,7 @@ impl Hairs {
             tip: section.along.tip as f32,
             taper_start: section.along.start as f32,
             hairs,
+            packing,
         }
     }
 

@@ -10,7 +10,7 @@ use wide::f32x8;
 use super::hairs::{Hairs, Traits};
 use super::material::{Section, nodes};
 use super::real::Vector;
-use super::rest;
+use super::rest::{self, Former};
 use super::rod::Node;
 use super::settings::Rest;
 
@@ -24,6 +24,8 @@ pub(crate) struct RodsAtRest<'a> {
     pub inverse_mass: &'a [Lanes],
     /// \[kg\].
     pub mass: &'a [Lanes],
+    /// True if strands have masses of their own, from which the number of their hairs follows.
+    pub weighed: bool,
     /// \[m/s^2\].
     pub gravity: Vec3,
 }
@@ -57,8 +59,16 @@ impl Rods {
             .map(|(block, (positions, inverse_mass))| {
                 let live = strands.strand_count.saturating_sub(block * LANES).clamp(1, LANES);
                 let mass = &strands.mass[block * points..(block + 1) * points];
-                let section = |lane: usize| hairs.section(block * LANES + lane);
-                Block::new(positions, inverse_mass, mass, live, section, rest, strands.gravity)
+                let made_of = |lane: usize| {
+                    let strand = block * LANES + lane;
+                    (hairs.section(strand), hairs.former(strand))
+                };
+                let mut block =
+                    Block::new(positions, inverse_mass, mass, live, made_of, rest, strands.gravity);
+                if !strands.weighed {
+                    block.heavier = [1.0; LANES];
+                }
+                block
             })
             .collect();
         // Lanes beyond the last strand move with it.
@@ -68,7 +78,13 @@ impl Rods {
             stiffened: stiffening().count(),
             stiffest: stiffening().fold(1.0, f64::max) as f32,
             key: Arc::default(),
-            traits: (0..blocks.len() * LANES).map(|lane| hairs.traits(lane.min(last))).collect(),
+            traits: (0..blocks.len() * LANES)
+                .map(|lane| {
+                    let (strand, traits) = (lane.min(last), hairs.traits(lane.min(last)));
+                    let heavier = blocks[strand / LANES].heavier[strand % LANES];
+                    Traits { hairs: traits.hairs * heavier, ..traits }
+                })
+                .collect(),
             nodes: blocks.iter().flat_map(|block| block.nodes.iter().copied()).collect(),
             sections: blocks.iter().flat_map(|block| block.sections.iter().copied()).collect(),
         }
@@ -81,6 +97,8 @@ struct Block {
     sections: Vec<Vec3Lanes>,
     /// Stiffening of each strand; 1 in empty lanes.
     stiffening: [f64; LANES],
+    /// Mass of each strand over that of its material.
+    heavier: [f32; LANES],
 }
 
 impl Block {
@@ -89,28 +107,30 @@ impl Block {
         inverse_mass: &[Lanes],
         mass: &[Lanes],
         live: usize,
-        section: impl Fn(usize) -> Section,
+        made_of: impl Fn(usize) -> (Section, Former),
         rest: Rest,
         gravity: Vec3,
     ) -> Self {
         let count = positions.len();
-        let mut stiffening = [1.0; LANES];
+        let (mut stiffening, mut heavier) = ([1.0; LANES], [1.0; LANES]);
         let mut sections = vec![Vec3Lanes::splat(Vec3::X); count];
         let mut strands = Vec::with_capacity(LANES);
         for lane in 0..LANES {
             // Lanes beyond the last strand move with it.
             let lane_of = lane.min(live - 1);
             let points: Vec<Vector<f64>> = positions.iter().map(|lanes| lanes.get(lane_of).into()).collect();
-            let mut rod = nodes(&points, &section(lane_of), |point| inverse_mass[point].0[lane_of] == 0.0);
+            let (section, former) = made_of(lane_of);
+            let mut rod = nodes(&points, &section, |point| inverse_mass[point].0[lane_of] == 0.0);
+            let of_material: f64 = rod.iter().map(|node| node.mass).sum();
             for (node, mass) in rod.iter_mut().zip(mass) {
                 node.mass = f64::from(mass.0[lane_of]);
             }
+            heavier[lane] = (rod.iter().map(|node| node.mass).sum::<f64>() / of_material) as f32;
             let segments = rest::segments(&points, rest::across(&points));
             match rest {
                 Rest::Unstressed => rest::unstressed(&mut rod, &segments),
-                Rest::SagFree => {
-                    let forces: Vec<_> = rod.iter().map(|node| Vector::from(gravity) * node.mass).collect();
-                    let times = rest::sag_free(&mut rod, &points, &segments, &forces);
+                Rest::SagFree | Rest::Dry => {
+                    let times = former.sag_free(&mut rod, &points, &segments, gravity);
                     if lane < live {
                         stiffening[lane] = times;
                     }
@@ -123,7 +143,7 @@ impl Block {
             strands.push(rod);
         }
         let nodes = (0..count).map(|point| gathered(&strands, point)).collect();
-        Self { nodes, sections, stiffening }
+        Self { nodes, sections, stiffening, heavier }
     }
 }
 

@@ -5,9 +5,10 @@ use strandline_base::par::prelude::*;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
+use super::hairs::Hairs;
 use super::joint::{Joint, Segment};
 use super::real::{Real, Vector};
-use super::rest::{across, sag_free, segments};
+use super::rest::{Former, across, segments};
 use super::rod::Node;
 
 /// Strands at rest and with their lengths now, shapes `[block][point]` of lanes.
@@ -22,6 +23,7 @@ pub(crate) struct Lengthened<'a> {
     pub mass: &'a [Lanes],
     /// Load of the rest shape \[m/s^2\]; `None` for a rest shape without moments.
     pub gravity: Option<Vec3>,
+    pub hairs: &'a Hairs,
 }
 
 impl Lengthened<'_> {
@@ -38,7 +40,8 @@ impl Lengthened<'_> {
             let factors = follow_lengths(nodes, rest, now, &self.mass[range.clone()]);
             let Some(gravity) = self.gravity else { return };
             for lane in (0..LANES).filter(|lane| (0..points).any(|k| rest[k].0[*lane] != now[k].0[*lane])) {
-                carry_weight(gravity, &self.positions[range.clone()], now, &factors, lane, nodes);
+                let former = self.hairs.former(block * LANES + lane);
+                carry_weight((gravity, former), &self.positions[range.clone()], now, &factors, lane, nodes);
             }
         });
     }
@@ -86,7 +89,7 @@ fn follow_lengths(
 
 /// Makes the shape of a strand the equilibrium under the weight that it has now.
 fn carry_weight(
-    gravity: Vec3,
+    (gravity, former): (Vec3, Former),
     positions: &[Vec3Lanes],
     lengths: &[Lanes],
     factors: &[f32x8],
@@ -99,8 +102,7 @@ fn carry_weight(
     let (points, segments) =
         shape(points[0], &at_rest, |index| f64::from(lengths[index].0[lane]), |joint| number(factors[joint]));
     let mut rod: Vec<Node<f64>> = nodes.iter().map(|node| node.map(number)).collect();
-    let forces: Vec<_> = rod.iter().map(|node| Vector::from(gravity) * node.mass).collect();
-    sag_free(&mut rod, &points, &segments, &forces);
+    former.sag_free(&mut rod, &points, &segments, gravity);
     for (node, one) in nodes.iter_mut().zip(&rod) {
         let set = |lanes: &mut f32x8, number: f64| lanes.as_mut_array()[lane] = number as f32;
         set(&mut node.length, one.length);

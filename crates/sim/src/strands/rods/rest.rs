@@ -1,8 +1,11 @@
 //! The rest shape of a rod: lengths, bends and twists without moments, or those that keep its shape in equilibrium under a
 //! load.
 
+use glam::Vec3;
+
 use super::joint::Joint;
 use super::joint::Segment;
+use super::material::Section;
 use super::real::Vector;
 use super::rod::Node;
 use super::stability::stiffening;
@@ -93,6 +96,50 @@ pub fn sag_free(
         }
     }
     stiffer
+}
+
+/// Hair when it took its shape, as shares of what it is now.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Former {
+    /// Mass per length.
+    pub weight: f64,
+    /// Stiffness of both bends and of the twist.
+    pub stiffness: [f64; 3],
+}
+
+impl Former {
+    /// Hair that has not changed.
+    pub const SAME: Self = Self { weight: 1.0, stiffness: [1.0; 3] };
+
+    /// Hair of a section before it had the section of now.
+    pub fn new(before: &Section, now: &Section) -> Self {
+        let stiffness = |section: &Section| [section.bend[0], section.bend[1], section.twist];
+        let [before_stiffness, stiffness] = [before, now].map(stiffness);
+        Self {
+            weight: before.mass / now.mass,
+            stiffness: std::array::from_fn(|axis| before_stiffness[axis] / stiffness[axis]),
+        }
+    }
+
+    /// Makes a shape the equilibrium of this hair under gravity \[m/s^2\], as [`sag_free`] does.
+    pub fn sag_free(
+        &self,
+        rod: &mut [Node<f64>],
+        points: &[Vector<f64>],
+        segments: &[Segment<f64>],
+        gravity: Vec3,
+    ) -> f64 {
+        let forces: Vec<_> =
+            rod.iter().map(|node| Vector::from(gravity) * (node.mass * self.weight)).collect();
+        for node in &mut *rod {
+            node.stiffness = std::array::from_fn(|axis| node.stiffness[axis] * self.stiffness[axis]);
+        }
+        let stiffer = sag_free(rod, points, segments, &forces);
+        for node in rod {
+            node.stiffness = std::array::from_fn(|axis| node.stiffness[axis] / self.stiffness[axis]);
+        }
+        stiffer
+    }
 }
 
 /// Moment that each joint is taken to carry beyond its own, over that of the whole load at the length of the strand:

@@ -9,7 +9,7 @@ settings! {
     /// Hair as rods: bending and twisting follow from what a hair is made of.
     ///
     /// Stiffness goes with the fourth power of the radius, weight with its square. `hair` sets the defaults of what
-    /// hair is made of, `radius` to `damping`.
+    /// hair is made of, `radius` to `damping`, of `rubbing`, and of the groom's shape where hair is wet.
     pub struct RodSettings: Copy {
         /// Kind of hair.
         hair: HairKind = HairKind::default();
@@ -34,6 +34,8 @@ settings! {
         /// Sharing of load among the hairs of a guide: 0 lets each bend by itself, so that n hairs are n
         /// times as stiff as one; 1 glues them to one, n^2 times; between, n^(1 + cohesion).
         cohesion: f32 = 0.0, in [0.0, 1.0], more "locks that bend as one", invalidates rest_shape;
+        /// Share of the section of a wisp that its hairs fill: the air meets no more of them than a cylinder as wide as the wisp.
+        packing: f32 = 0.3, in [0.01, 1.0], more "thinner wisps that the wind moves less", invalidates rest_shape;
         /// Relaxation time of bends and twists: what they lag behind their rest.
         damping: f32 = 0.002, in [0.0, 10.0] "s", slider [0.0, 0.1],
             more "bends that swing back more slowly and tremble less", invalidates rest_shape;
@@ -75,6 +77,8 @@ choices! {
         SagFree = "sag_free",
         /// The shape without any load: it sags.
         Unstressed = "unstressed",
+        /// The equilibrium under gravity of the same hair when it was dry: under water or lacquer it droops.
+        Dry = "dry",
     }
     default SagFree
 }
@@ -95,6 +99,7 @@ settings! {
             load: f32,
             wisp_hairs: u32,
             cohesion: f32,
+            packing: f32,
             damping: f32,
             ellipticity: f32,
             tip_radius: f32,
@@ -141,7 +146,7 @@ impl RodSettings {
         if let Some(hair) = group.hair {
             kind.set_hair(hair);
         }
-        let mut rods = group.over(self);
+        let mut rods = Self { rest: kind.rest, ..group.over(self) };
         if group.shear_modulus.is_none() {
             let share = |shear| shear * rods.youngs_modulus / kind.youngs_modulus;
             rods.shear_modulus = kind.shear_modulus.filter(|_| group.poisson_ratio.is_none()).map(share);
