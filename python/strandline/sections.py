@@ -199,6 +199,10 @@ class Style(TypedDict, total=False):
     parting: float
     """Place of the parting, positive on the head's left. Allowed: -0.07 to 0.07 m."""
 
+    fringe: float
+    """Way below the hairline at which hair from above the forehead is cut that falls over it; 0 leaves the forehead
+    free, and 0.05 reaches the brows. For hair that falls from a parting or is tied. Allowed: 0 to 0.3 m."""
+
     swirl: float
     """Turn of the hair around the whorl. Allowed: -3 to 3 rad."""
 
