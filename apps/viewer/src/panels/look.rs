@@ -29,8 +29,8 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     slide(ui, (&mut clump.root_radius, base_clump.root_radius), &Clump::ROWS.root_radius, "clump root");
     slide(ui, (&mut clump.tip_radius, base_clump.tip_radius), &Clump::ROWS.tip_radius, "clump tip");
     let (coat, base_coat) = (&mut look.coat, &base.coat);
-    slide(ui, (&mut coat.pigment, base_coat.pigment), &Coat::ROWS.pigment, "pigment under a coat");
-    slide(ui, (&mut coat.roughness, base_coat.roughness), &Coat::ROWS.roughness, "roughness under it");
+    slide(ui, (&mut coat.pigment, base_coat.pigment), &Coat::ROWS.pigment, "coat pigment");
+    slide(ui, (&mut coat.roughness, base_coat.roughness), &Coat::ROWS.roughness, "coat roughness");
     fibre(look, base, ui);
     slide(ui, (&mut look.highlight_noise, base.highlight_noise), &rows.highlight_noise, "noise");
     surroundings(look, base, ui);

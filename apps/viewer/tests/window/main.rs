@@ -29,17 +29,16 @@ fn hair_is_grabbed_where_the_button_was_pressed_and_follows_though_nothing_plays
     window.settle();
     window.press(egui::Key::G);
     let picture = window.picture();
-    // Dark brown on grey, in the lower half, where there is no skin behind it, nor the outline of skin.
+    let width = picture.width as usize;
+    // Brown on grey, in the lower half, at the right, where there is no skin behind it nor its shadow.
     let is_hair = |index: usize| {
         let pixel = &picture.pixels[3 * index..3 * index + 3];
-        pixel[0] < 75 && i16::from(pixel[0]) - i16::from(pixel[2]) > 15
+        3 * (index % width) > 2 * width && i16::from(pixel[0]) - i16::from(pixel[2]) > 15
     };
-    let width = picture.width as usize;
     let hair =
         (picture.height as usize * width / 2..picture.height as usize * width).find(|index| is_hair(*index));
     let hair = hair.expect("hair in the picture");
-    // Between the panels, the status bar and the margins.
-    let room = egui::Rect::from_min_max(egui::pos2(303.0, 8.0), egui::pos2(892.0, 567.0));
+    let room = window.room();
     let scale = egui::vec2(room.width() / width as f32, room.height() / picture.height as f32);
     let place = room.min + egui::vec2((hair % width) as f32 + 0.5, (hair / width) as f32 + 0.5) * scale;
     // The whole drag in one pass, as in a slow window.

@@ -93,6 +93,12 @@ impl Window {
         ends.filter(|rect| part.contains(rect.left_center())).map(|rect| rect.right()).fold(0.0, f32::max)
     }
 
+    /// The place of the picture, the largest image.
+    pub fn room(&self) -> egui::Rect {
+        let images = self.harness.query_all_by_role(Role::Image).map(|node| node.rect());
+        images.max_by(|one, two| one.area().total_cmp(&two.area())).expect("a picture")
+    }
+
     pub fn app(&self) -> &App {
         self.harness.state()
     }
