@@ -68,7 +68,7 @@ law! {
         rig.change(|state| state.set_length_scale(&model, &[0.5]).unwrap());
         rig.steps(&second);
         let found = -first(rig.state()).last().unwrap().y;
-        // What is left has half as many segments: 0.81. In equilibrium under its water it would not droop at all.
+        // The hair that is left has half as many segments: 0.81. In equilibrium under its water it would not droop at all.
         assert!((found / expected - 1.0).abs() < 0.3, "{found}, expected {expected}");
     }
 }

@@ -27,7 +27,7 @@
 ///   merges those that are given into an `Other`. Each is an `Option`, absent by default.
 /// * `plain { name: Type }` are fields that no file has; `moved { name: Type => "new.key" }` are keys of
 ///   old files: read by a section around this one in its `prepare`, refused elsewhere with the new key.
-/// * After the struct, `prepare path;` names a `fn(&mut Self, &<Self as Value>::Given)` that runs before
+/// * After the struct, `prepare path;` names a `fn(&mut Self, &mut <Self as Value>::Given)`, or one that only reads what is given, that runs before
 ///   what is given is taken (for defaults that depend on it), and `also path;` a
 ///   `fn(&Self, &Key) -> Result<(), SettingError>` for conditions beyond ranges.
 #[macro_export]
@@ -184,7 +184,8 @@ macro_rules! settings {
                 const KIND: $crate::Kind = $crate::Kind::Group(&<Self as $crate::Group>::TABLE);
 
                 fn take(&mut self, given: Given) {
-                    $($prepare(self, &given);)?
+                    $(let mut given = given;
+                    $prepare(self, &mut given);)?
                     $(if let Some(part) = given.$field {
                         $crate::Value::take(&mut self.$field, part);
                     })*
@@ -235,7 +236,7 @@ macro_rules! settings {
                         $($($over: None,)*)*
                         $($($plain: Default::default(),)*)?
                     };
-                    $($prepare(&mut fresh, &Given::default());)?
+                    $($prepare(&mut fresh, &mut Given::default());)?
                     fresh
                 }
             }

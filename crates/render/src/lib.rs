@@ -36,6 +36,7 @@ mod shadow;
 mod strands;
 mod surfaces;
 pub mod surroundings;
+mod under_coat;
 
 pub use body_look::BodyLook;
 pub use camera::Camera;

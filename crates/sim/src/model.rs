@@ -193,7 +193,8 @@ impl Model {
     /// Finds how thick wisps are, where they push each other.
     fn thicken(&mut self) {
         let contact = &self.settings.contact;
-        self.radii = if self.settings.has_contact() {
+        let rods = self.rods.as_ref().filter(|_| self.settings.has_contact());
+        self.radii = rods.map_or_else(Vec::new, |rods| {
             let rest = AtRest {
                 strand_count: self.strand_count,
                 points_per_strand: self.points_per_strand,
@@ -201,14 +202,12 @@ impl Model {
                 lengths: &self.rest.stretch,
             };
             rest.radii(|strand, share| {
-                let traits = &self.rods.as_ref().expect("contacts are of rods").traits[strand];
-                let hairs = contact.hairs.unwrap_or(traits.hairs);
-                let thinner = self.hairs.section(strand).along.radius(f64::from(share)) as f32;
-                0.5 * traits.diameter * thinner * (hairs / traits.packing).sqrt()
+                let traits = &rods.traits[strand];
+                let hairs = contact.hairs.unwrap_or(traits.hairs) / traits.packing;
+                let taper = self.hairs.section(strand).along.radius(f64::from(share)) as f32;
+                0.5 * traits.diameter * hairs.sqrt() * taper
             })
-        } else {
-            Vec::new()
-        };
+        });
     }
 
     /// Density \[kg/m^3\] around each point at rest, shape `[block][point]` of lanes; none without a one-sided volume.

@@ -111,9 +111,12 @@ impl Settings {
     }
 
     /// Files of before had the settings of constrained strands beside those of all.
-    fn take_moved(&mut self, given: &<Self as Value>::Given) {
-        let packing = given.contact.as_ref().and_then(|contact| contact.packing);
-        self.strands.rods.packing = packing.unwrap_or(self.strands.rods.packing);
+    fn take_moved(&mut self, given: &mut <Self as Value>::Given) {
+        if let Some(packing) = given.contact.as_ref().and_then(|contact| contact.packing) {
+            // A kind of hair, which is taken later, has a share of its own.
+            let rods = given.strands.get_or_insert_default().rods.get_or_insert_default();
+            rods.packing.get_or_insert(packing);
+        }
         let constrain = &mut self.strands.constrain;
         constrain.iterations = given.iterations.unwrap_or(constrain.iterations);
         constrain.mass_per_length = given.mass_per_length.unwrap_or(constrain.mass_per_length);

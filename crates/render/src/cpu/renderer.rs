@@ -89,6 +89,7 @@ impl Renderer {
         input: &FrameInput,
         picture: &mut Picture,
     ) -> Result<FrameReport, RenderError> {
+        input.validate()?;
         let look = input.look.under_coat();
         let input = &FrameInput { look: &look, ..*input };
         let mut report = self.run(input, Some(picture))?;
@@ -104,6 +105,7 @@ impl Renderer {
     /// # Errors
     /// A setting outside its range; more memory than may be taken.
     pub fn draw_samples(&mut self, input: &FrameInput) -> Result<FrameReport, RenderError> {
+        input.validate()?;
         let look = input.look.under_coat();
         self.run(&FrameInput { look: &look, ..*input }, None)
     }

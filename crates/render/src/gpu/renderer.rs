@@ -190,6 +190,7 @@ impl GpuRenderer {
         picture: &mut Picture,
     ) -> Result<FrameReport, RenderError> {
         self.gpu.check_wait("a picture in memory")?;
+        input.validate()?;
         let look = input.look.under_coat();
         let input = &FrameInput { look: &look, ..*input };
         let own = match self.own.take() {
@@ -235,6 +236,7 @@ impl GpuRenderer {
     ) -> Result<(FrameReport, wgpu::SubmissionIndex), RenderError> {
         input.validate()?;
         let (given, lights) = (input.lights, at_samples(input.lights, input.look.suns()));
+        input.validate()?;
         let look = input.look.under_coat();
         let input = &FrameInput { look: &look, lights: &lights, ..*input };
         self.points.check(&self.gpu, &self.groom, input, points)?;

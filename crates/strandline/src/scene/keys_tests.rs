@@ -167,6 +167,14 @@ fn a_kind_of_hair_brings_its_look_and_time_to_droop_and_leaves_what_is_given() {
     // Older files have the share of a wisp beside the settings of contact.
     let older = Scene::parse("simulation.contact.packing = 0.5", "scene").unwrap();
     assert_eq!(older.simulation.strands.rods.packing, 0.5);
+    let text = "[simulation]\ncontact.packing = 0.5\nstrands.rods.hair = \"wet\"";
+    assert_eq!(Scene::parse(text, "scene").unwrap().simulation.strands.rods.packing, 0.5);
+    // A wet group droops before the film begins.
+    let text = "[[simulation.groups]]\ngroup = \"1\"\nhair = \"wet\"";
+    assert_eq!(Scene::parse(text, "scene").unwrap().film.settle, 2.0);
+    // Constrained strands do not droop, whatever the order of the keys.
+    let text = "[simulation.strands]\nmethod = \"constrain\"\nrods.hair = \"wet\"";
+    assert_eq!(Scene::parse(text, "scene").unwrap().film.settle, 1.0);
 }
 
 #[test]
