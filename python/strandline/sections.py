@@ -1070,7 +1070,7 @@ class LookClump(TypedDict, total=False):
 class LookCoat(TypedDict, total=False):
     """Water or lacquer on hair: it darkens hair, smooths its scales and draws strands together.
     `simulation.strands.rods.hair` brings it along, whatever the look. Under the thesis's fibre the colours of strands
-    of a file stay."""
+    of a file, a map or a group stay."""
 
     pigment: float
     """Multiple of the pigment that light meets: the surface of a film throws light back into the hair. Allowed: 0.1
