@@ -168,7 +168,7 @@ mod tests {
 
     use super::*;
     use crate::surroundings::Surroundings;
-    use crate::{BodyLook, Camera, LevelOfDetail, Light, LightKind, Look};
+    use crate::{BodyLook, Camera, Coat, LevelOfDetail, Light, LightKind, Look};
 
     #[test]
     fn places_of_lights_and_suns_are_counted_once() {
@@ -191,6 +191,28 @@ mod tests {
         };
         let error = renderer.draw(&input).unwrap_err().to_string();
         assert!(error.contains("4096 for each of 50 lights with shadow"), "{error}");
+    }
+
+    #[test]
+    fn a_coat_outside_its_range_is_refused() {
+        let mut groom = Groom::empty(8e-5);
+        groom.push([Vec3::ZERO, Vec3::Y]);
+        let guides = Guides::resample(&groom, 4).unwrap();
+        let mut renderer = Renderer::new(&guides, None, &PictureSettings::sized(16, 16)).unwrap();
+        for pigment in [-1.0, f32::NAN] {
+            let look = Look { coat: Coat { pigment, ..Coat::NONE }, ..Look::brown() };
+            let input = FrameInput {
+                positions: guides.positions(),
+                body: &BodyFrame::REST,
+                camera: &Camera::front(),
+                look: &look,
+                body_look: &BodyLook::default(),
+                lights: &[],
+                level_of_detail: &LevelOfDetail::default(),
+            };
+            let error = renderer.draw(&input).unwrap_err().to_string();
+            assert!(error.contains("coat.pigment"), "{error}");
+        }
     }
 
     #[test]
