@@ -27,9 +27,9 @@
 ///   merges those that are given into an `Other`. Each is an `Option`, absent by default.
 /// * `plain { name: Type }` are fields that no file has; `moved { name: Type => "new.key" }` are keys of
 ///   old files: read by a section around this one in its `prepare`, refused elsewhere with the new key.
-/// * After the struct, `prepare path;` names a `fn(&mut Self, &mut <Self as Value>::Given)`, or one that only reads what is given, that runs before
-///   what is given is taken (for defaults that depend on it), and `also path;` a
-///   `fn(&Self, &Key) -> Result<(), SettingError>` for conditions beyond ranges.
+/// * After the struct, `prepare path;` names a `fn(&mut Self, &mut <Self as Value>::Given)`, or one that only
+///   reads what is given. It runs before that is taken (for defaults that depend on it, and keys that moved).
+///   `also path;` names a `fn(&Self, &Key) -> Result<(), SettingError>` for conditions beyond ranges.
 #[macro_export]
 macro_rules! settings {
     (
