@@ -1,7 +1,7 @@
 use std::str::FromStr;
 
 use glam::Vec3;
-use strandline_base::SettingError;
+use strandline_base::{SettingError, Value};
 
 use super::groom::{filling, grown};
 use super::{FilmSection, GroomSection, MotionName, Scene};
@@ -48,6 +48,24 @@ impl Scene {
             self.look.hair_count = hairs(style);
         }
         self.look.follow_strands = filling(strand_count, self.groom.bound);
+    }
+
+    /// Sets what settings of the simulation bring along in other sections, before they are taken themselves.
+    pub(super) fn follow_simulation(&mut self, given: &<Settings as Value>::Given) {
+        let strands = given.strands.as_ref();
+        if let Some(method) = strands.and_then(|strands| strands.method) {
+            // Hair that is wet droops as rods alone.
+            self.simulation.strands.method = method;
+            if method == StrandMethod::Constrain {
+                self.film.settle = FilmSection::SETTLE;
+            }
+        }
+        let hair = strands.and_then(|strands| strands.rods.as_ref()).and_then(|rods| rods.hair);
+        hair.into_iter().for_each(|hair| self.set_hair(hair));
+        let has_wet = given.groups.iter().flatten().any(|group| group.hair == Some(HairKind::Wet));
+        if has_wet && self.simulation.strands.method == StrandMethod::Rods {
+            self.film.settle = self.film.settle.max(FilmSection::DROOP);
+        }
     }
 
     /// Sets a kind of hair: its material as rods, and what is seen of it (`look.coat`). Hair that is wet droops before the film

@@ -3,9 +3,9 @@
 use strandline_base::{Group, Kind, Row, SettingError, Table, Value, printable};
 use toml::Value as Toml;
 
+use super::Scene;
 use super::colors::{hex_color, is_color};
-use super::{FilmSection, Scene};
-use crate::{Error, render::Preset, sim::StrandMethod};
+use crate::{Error, render::Preset};
 
 /// A key, taken apart: names of sections and indices of list items.
 #[derive(Clone, Debug, PartialEq)]
@@ -132,12 +132,7 @@ impl Scene {
         if given.look.as_ref().is_some_and(|look| look.preset == Some(Preset::Thesis)) {
             self.dress_thesis();
         }
-        let strands = given.simulation.as_ref().and_then(|simulation| simulation.strands.as_ref());
-        if strands.and_then(|strands| strands.method) == Some(StrandMethod::Constrain) {
-            self.film.settle = FilmSection::SETTLE;
-        }
-        let rods = strands.and_then(|strands| strands.rods.as_ref());
-        rods.and_then(|rods| rods.hair).into_iter().for_each(|hair| self.set_hair(hair));
+        given.simulation.iter().for_each(|simulation| self.follow_simulation(simulation));
         let groom = given.groom.as_ref().is_some_and(|groom| groom.file.is_some());
         if groom || given.body.as_ref().is_some_and(|body| body.file.is_some()) {
             self.begin_at_rest();

@@ -4,7 +4,7 @@ use super::*;
 use crate::{
     Style,
     render::{Coat, LightKind},
-    scene::MotionName,
+    scene::{FilmSection, MotionName},
     sim::rods::Rest,
 };
 
@@ -172,6 +172,9 @@ fn a_kind_of_hair_brings_its_look_and_time_to_droop_and_leaves_what_is_given() {
     // A wet group droops before the film begins.
     let text = "[[simulation.groups]]\ngroup = \"1\"\nhair = \"wet\"";
     assert_eq!(Scene::parse(text, "scene").unwrap().film.settle, 2.0);
+    let mut set = Scene::default();
+    set.set("simulation.groups", "[{ group = \"1\", hair = \"wet\" }]").unwrap();
+    assert_eq!(set.film.settle, 2.0);
     // Constrained strands do not droop, whatever the order of the keys.
     let text = "[simulation.strands]\nmethod = \"constrain\"\nrods.hair = \"wet\"";
     assert_eq!(Scene::parse(text, "scene").unwrap().film.settle, 1.0);

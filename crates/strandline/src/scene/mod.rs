@@ -42,7 +42,7 @@ use crate::{
     Backend, Error,
     groom::{Stroke, StyleSettings},
     render::{BodyLook, LevelOfDetail, Light, Look, PictureSettings, Preset, memory::MAX_LIGHTS},
-    sim::{Settings, StrandMethod, rods::HairKind},
+    sim::Settings,
 };
 
 /// Largest file that is read \[bytes\]: unknown keys take some 30 times as much memory, and a scene of ten
@@ -135,20 +135,7 @@ impl Scene {
         }
         let clump = look.and_then(|look| look.clump.as_ref());
         let (level, body_look) = (given.level_of_detail.as_ref(), given.body_look.as_ref());
-        let strands = given.simulation.as_ref().and_then(|simulation| simulation.strands.as_ref());
-        if strands.and_then(|strands| strands.method) == Some(StrandMethod::Constrain) {
-            self.film.settle = FilmSection::SETTLE;
-        }
-        // Hair that is wet droops as rods alone.
-        self.simulation.strands.method =
-            strands.and_then(|strands| strands.method).unwrap_or(self.simulation.strands.method);
-        let rods = strands.and_then(|strands| strands.rods.as_ref());
-        rods.and_then(|rods| rods.hair).into_iter().for_each(|hair| self.set_hair(hair));
-        let groups = given.simulation.as_ref().and_then(|simulation| simulation.groups.as_ref());
-        let has_wet = groups.into_iter().flatten().any(|group| group.hair == Some(HairKind::Wet));
-        if has_wet && self.simulation.strands.method == StrandMethod::Rods {
-            self.film.settle = self.film.settle.max(FilmSection::DROOP);
-        }
+        given.simulation.iter().for_each(|simulation| self.follow_simulation(simulation));
         self.given = Given {
             follow_strands: look.is_some_and(|look| look.follow_strands.is_some()),
             hair_count: look.is_some_and(|look| look.hair_count.is_some()),
