@@ -4,6 +4,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use glam::Vec3;
 use image::{RgbImage, imageops};
 use strandline::{
     Backend, Camera, Hair, Picture, Prepared, Scene, Style, look::Preset, scene::View, settings::Kind,
@@ -14,6 +15,8 @@ const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../apps/viewer/ass
 const SMALL: u32 = 64;
 /// Fringe of the last picture \[m\].
 const FRINGE: f32 = 0.05;
+/// A place before the eyes \[m\] and the place that is seen from there.
+const EYES: [Vec3; 2] = [Vec3::new(0.11, 0.0, 0.43), Vec3::new(0.008, -0.012, 0.085)];
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/styles.md");
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -70,6 +73,10 @@ fn grown(style: Style, fringe: f32, quick: bool) -> Result<(Hair, Camera), stran
     }
     if matches!(style.name(), "bun" | "braid") {
         scene.camera.view = View::Side;
+    }
+    if matches!(style.name(), "brows" | "lashes") {
+        (scene.camera.position, scene.camera.target) = (Some(EYES[0]), Some(EYES[1]));
+        scene.camera.field_of_view = Some(20.0);
     }
     let prepared = Prepared::new(&scene)?;
     let camera = prepared.camera(1.0);

@@ -95,7 +95,7 @@ pub struct Inputs {
     /// demo, thesis, or a .toml file [default: demo].
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub scene: Option<String>,
-    /// Grow this style: bob, long, wavy, curly, pixie, ponytail, buzz, side_swept, afro, coils, bun, braid, beard or brows.
+    /// Grow this style: bob, long, wavy, curly, pixie, ponytail, buzz, side_swept, afro, coils, bun, braid, beard, brows or lashes.
     #[arg(long, value_name = "NAME", value_parser = Style::from_str, conflicts_with = "groom")]
     pub style: Option<Style>,
     #[arg(long, value_name = "FILE", help = format!(
@@ -227,7 +227,7 @@ pub struct SimOptions {
 
 #[derive(Args, Debug)]
 pub struct GroomOptions {
-    /// bob, long, wavy, curly, pixie, ponytail, buzz, side_swept, afro, coils, bun, braid, beard or brows.
+    /// bob, long, wavy, curly, pixie, ponytail, buzz, side_swept, afro, coils, bun, braid, beard, brows or lashes.
     #[arg(long, value_name = "NAME", value_parser = Style::from_str)]
     pub style: Style,
     /// Number of strands.

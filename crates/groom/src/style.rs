@@ -5,6 +5,7 @@ mod face;
 mod finish;
 mod grow;
 mod hair;
+mod lashes;
 mod locks;
 mod near;
 mod settings;
@@ -46,6 +47,8 @@ choices! {
         Beard = "beard",
         /// Eyebrows; nothing on the scalp.
         Brows = "brows",
+        /// Eyelashes of both lids; nothing on the scalp.
+        Lashes = "lashes",
     }
     default Long
 }
@@ -56,7 +59,7 @@ impl Style {
         match self {
             Self::Bob | Self::Long | Self::Wavy | Self::Curly | Self::SideSwept | Self::Coils => true,
             Self::Pixie | Self::Buzz | Self::Afro | Self::Ponytail | Self::Bun | Self::Braid => false,
-            Self::Beard | Self::Brows => false,
+            Self::Beard | Self::Brows | Self::Lashes => false,
         }
     }
 
@@ -66,14 +69,14 @@ impl Style {
             Self::Curly | Self::Coils | Self::Braid => 56,
             Self::Afro | Self::Bun => 48,
             Self::Wavy | Self::SideSwept => 28,
-            Self::Buzz | Self::Beard | Self::Brows => 8,
+            Self::Buzz | Self::Beard | Self::Brows | Self::Lashes => 8,
             Self::Pixie | Self::Ponytail | Self::Bob | Self::Long => 16,
         }
     }
 
     /// True if hair grows on the face and not on the scalp.
     pub fn is_of_face(self) -> bool {
-        matches!(self, Self::Beard | Self::Brows)
+        matches!(self, Self::Beard | Self::Brows | Self::Lashes)
     }
 
     /// True if all hair runs through a tie behind the head.

@@ -46,6 +46,7 @@ fn a_style_that_was_written_and_read_is_drawn_as_the_style() {
         let hairs = match style {
             "beard" => "look.hair_count=25000",
             "brows" => "look.hair_count=1500",
+            "lashes" => "look.hair_count=550",
             _ => "look.hair_count=100000",
         };
         let (read, notes) = drawn(at, size, &["--groom", file, "--set", hairs]);

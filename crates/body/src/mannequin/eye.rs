@@ -51,6 +51,16 @@ impl Eye {
         (margin * lean * arch - above.abs(), Vec2::new(height_slope + side * line_slope, -side))
     }
 
+    /// A place of the margin of a lid \[m\] as seen from the front, by the share of the way from the middle of the eye to its
+    /// outer corner, from -1, the inner corner, to 1.
+    pub(super) fn margin(&self, across: f32, is_upper: bool) -> Vec2 {
+        let arch = 1.0 - across * across;
+        let line = self.middle * arch + 0.5 * self.tilt * across;
+        let [skew, margin] = if is_upper { [-SKEW, self.margins[0]] } else { [SKEW, -self.margins[1]] };
+        let up = line + margin * (1.0 + skew * across) * arch;
+        self.center.truncate() + Vec2::new(across * self.half_width, up)
+    }
+
     /// True for a point above the middle line.
     fn is_above(&self, point: Vec3) -> bool {
         let across = ((point.x - self.center.x) / self.half_width).clamp(-2.0, 2.0);
@@ -122,6 +132,19 @@ mod tests {
         }
         assert!(count > 150.0, "{count}");
         [good / count, far / count]
+    }
+
+    #[test]
+    fn a_lid_ends_at_its_margin() {
+        for eyes in Eyes::ALL {
+            let eye = Mannequin::of(Build::Medium, eyes).shape.eye;
+            for (across, is_upper) in [(-0.9, true), (0.0, true), (0.7, true), (-0.5, false), (0.6, false)] {
+                let margin = eye.margin(across, is_upper).extend(0.08);
+                let (into, _) = eye.opening(margin);
+                assert!(into.abs() < 1e-6, "{eyes:?} {across} {is_upper}: {into}");
+                assert_eq!(eye.is_above(margin), is_upper);
+            }
+        }
     }
 
     #[test]

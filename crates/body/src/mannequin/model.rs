@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::field::Field;
 use super::person::{Build, Eyes};
@@ -73,6 +73,17 @@ impl Mannequin {
     /// True if an ear is nearer than a distance \[m\]: quicker than the distance itself where both are far.
     pub(crate) fn is_ear_within(&self, point: Vec3, distance: f32) -> bool {
         self.shape.is_ear_within(point, distance)
+    }
+
+    /// A place of the margin of a lid of the eye on the side of positive x \[m\], as seen from the front. `across` is the share
+    /// of the way from the middle of the eye to its outer corner, from -1, the inner corner, to 1.
+    pub fn lid_margin(&self, across: f32, is_upper: bool) -> Vec2 {
+        self.shape.eye.margin(across, is_upper)
+    }
+
+    /// Centre of the eyeball on the side of positive x \[m\].
+    pub fn eye_center(&self) -> Vec3 {
+        self.shape.eye.center
     }
 
     /// The point \[m\] about which the head nods and turns: between the base of the skull and the

@@ -101,7 +101,7 @@ impl Combed {
                 self.falling(settings, place)
             }
             // Combed in their own way.
-            Style::Beard | Style::Brows => Vec3::NEG_Y,
+            Style::Beard | Style::Brows | Style::Lashes => Vec3::NEG_Y,
         }
     }
 

@@ -1,4 +1,4 @@
-//! Hair of the face: beard and brows, short strands about roots of their own.
+//! Hair of the face: beard and brows, short strands about roots of their own, and lashes.
 
 use glam::{Vec2, Vec3};
 use strandline_base::math;
@@ -6,6 +6,7 @@ use strandline_base::par::prelude::*;
 use strandline_body::{Mannequin, Random, Root, SignedDistance};
 
 use super::comb::smooth;
+use super::lashes;
 use super::skin::Skin;
 use super::strand::{CLEARANCE, Strand};
 use super::{Style, StyleSettings};
@@ -22,7 +23,10 @@ const UNEVEN: f32 = 0.0016;
 
 /// Grows strands of the face from `first` on.
 pub(super) fn strands(settings: &StyleSettings, skin: &Skin, first: usize, count: usize) -> Vec<Strand> {
-    let strand = |index: usize| strand(settings, skin, first + index);
+    let strand = |index: usize| match settings.style {
+        Style::Lashes => lashes::strand(settings, skin, first + index),
+        _ => strand(settings, skin, first + index),
+    };
     (0..count).into_par_iter().map(strand).collect()
 }
 
@@ -99,7 +103,7 @@ fn root(settings: &StyleSettings, mannequin: &Mannequin, index: usize) -> (Root,
 }
 
 /// The first place on the skin along a way \[m\].
-fn first_skin(mannequin: &Mannequin, start: Vec3, way: Vec3) -> Option<Vec3> {
+pub(super) fn first_skin(mannequin: &Mannequin, start: Vec3, way: Vec3) -> Option<Vec3> {
     let mut passed = 0.0;
     for _ in 0..48 {
         let distance = mannequin.distance(start + way * passed);

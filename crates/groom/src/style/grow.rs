@@ -1,5 +1,7 @@
 //! Grows strands step by step from their roots over the skull and down.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 use strandline_base::math;
 use strandline_base::memory::{self, Need};
@@ -47,9 +49,16 @@ impl StyleSettings {
     /// # Errors
     /// As [`StyleSettings::grow`].
     pub fn grow_hair(&self, drawn: usize) -> Result<Groom, GroomError> {
+        self.grow_on(Mannequin::new(), drawn)
+    }
+
+    /// As [`StyleSettings::grow_hair`], on a mannequin of another build or with closed eyes: beards and lashes differ there.
+    ///
+    /// # Errors
+    /// As [`StyleSettings::grow`].
+    pub fn grow_on(&self, mannequin: Arc<Mannequin>, drawn: usize) -> Result<Groom, GroomError> {
         self.validate()?;
         memory::check(&[self.memory(drawn)])?;
-        let mannequin = Mannequin::new();
         let more = drawn.saturating_sub(self.strand_count);
         if self.style.is_of_face() {
             let grown = face::strands(self, &Skin::new(mannequin), 0, self.strand_count.max(drawn));

@@ -80,6 +80,7 @@ impl StyleSettings {
             Style::Braid => plain.braid(),
             Style::Beard => plain.beard(),
             Style::Brows => plain.brows(),
+            Style::Lashes => plain.lashes(),
         }
     }
 
@@ -294,6 +295,10 @@ impl StyleSettings {
         Self { length: 0.010, length_variation: 0.35, volume: 0.001, noise: 0.001, ..self }
     }
 
+    fn lashes(self) -> Self {
+        Self { length: 0.011, length_variation: 0.2, noise: 0.0006, ..self }
+    }
+
     /// A missing key has the value of its style.
     fn prepare(&mut self, given: &<Self as Value>::Given) {
         if let Some(style) = given.style {
@@ -308,7 +313,9 @@ impl StyleSettings {
 
     /// Points of a grown strand: more where it bends more.
     pub(super) fn points(&self) -> usize {
-        if self.style.is_of_face() || self.style == Style::Buzz {
+        if self.style == Style::Lashes {
+            7
+        } else if self.style.is_of_face() || self.style == Style::Buzz {
             10
         } else if self.curl_radius > 0.0 || matches!(self.style, Style::Bun | Style::Braid) {
             64

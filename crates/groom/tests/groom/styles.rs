@@ -1,6 +1,8 @@
 //! Every grown style: on the scalp, outside the body, as long as it says, the same every time.
 
-use strandline_body::{Mannequin, SignedDistance};
+use std::sync::Arc;
+
+use strandline_body::{Build, Eyes, Mannequin, SignedDistance};
 use strandline_groom::{Groom, Style, StyleSettings};
 
 fn grown(style: Style, seed: u64) -> Groom {
@@ -91,6 +93,37 @@ fn a_fringe_falls_over_the_forehead_to_its_length_and_leaves_other_hair_alone() 
         let short = of_before.iter().filter(|tip| tip.z > 0.07 && tip.y > -0.01).count();
         assert!(short < 8, "{}: {short}", style.name());
     }
+}
+
+#[test]
+fn lashes_bend_away_from_the_eye_and_move_with_the_lids() {
+    let settings = StyleSettings { strand_count: 390, ..StyleSettings::new(Style::Lashes) };
+    let means = Eyes::ALL.map(|eyes| {
+        let mannequin = Arc::new(Mannequin::of(Build::Medium, eyes));
+        let (center, closed) = (mannequin.eye_center(), eyes == Eyes::Closed);
+        let groom = settings.grow_on(mannequin.clone(), 390).unwrap();
+        let (mut count, mut upper, mut sum) = (0, 0, 0.0);
+        for strand in 0..390 {
+            let points = groom.strand(strand);
+            let (root, tip) = (points[0], points[6]);
+            assert!(mannequin.distance(root).abs() < 1e-5, "{eyes:?}: a root off the skin");
+            // Within a millimetre and a quarter of the margin of a lid, before the eye.
+            let across = (root.x.abs() - center.x) / 0.014;
+            let [up, down] = [true, false].map(|is_upper| mannequin.lid_margin(across, is_upper).y);
+            let off = (root.y - up).abs().min((root.y - down).abs());
+            assert!(off < 0.00125 && root.z > center.z, "{eyes:?}: {root}, {off} m off a lid");
+            // The end of a lash of the upper lid rises, that of a lower one falls.
+            let end = (tip - points[5]).normalize();
+            let is_upper = end.y > 0.0;
+            upper += usize::from(is_upper);
+            assert!(closed || is_upper == (root.y > center.y), "{root} ends along {end}");
+            assert!(end.y.abs() > 0.2 && tip.z > root.z + 0.001, "{root} ends along {end}");
+            (count, sum) = (count + 1, sum + root.y);
+        }
+        assert_eq!((count, upper), (390, 240));
+        sum / 390.0
+    });
+    assert!(means[1] < means[0] - 0.002, "closed lids are lower: {means:?}");
 }
 
 #[test]

@@ -1,7 +1,11 @@
 //! Fifth stage of loading: roots on the skin.
 
+use std::sync::Arc;
+
+use strandline_body::Mannequin;
+
 use super::{cover, guess, loading::Loading, marked, wrap};
-use crate::{Error, Scene, groom::Groom};
+use crate::{Error, groom::Groom};
 
 /// Grows the style where the scene names no groom, leads roots of a style or of another head's hair to the skin, and
 /// presses hair under a hat: all before the strokes of a brush.
@@ -46,10 +50,14 @@ fn brush(loading: &mut Loading) {
 
 /// The style, on the body of a source or on the mannequin.
 fn grown(loading: &mut Loading) -> Result<Groom, Error> {
-    let mut groom = style(&loading.scene)?;
+    let (scene, body) = (&loading.scene, &loading.scene.body);
     if loading.own_mesh().is_none() {
-        return Ok(groom);
+        // On the face and over the shoulders of its build.
+        return Ok(scene
+            .style
+            .grow_on(Arc::new(Mannequin::of(body.build, body.eyes)), scene.grown_strands())?);
     }
+    let mut groom = scene.style.grow_hair(scene.grown_strands())?;
     let marked = marked::scalp(loading)?;
     let note = match loading.own_mesh() {
         Some(mesh) => wrap::onto(&mut groom, mesh, marked.as_ref(), loading.shape.as_ref())?,
@@ -57,9 +65,4 @@ fn grown(loading: &mut Loading) -> Result<Groom, Error> {
     };
     loading.notes.extend(note);
     Ok(groom)
-}
-
-/// A grown style: its guides, and the strands that are bound to them.
-fn style(scene: &Scene) -> Result<Groom, Error> {
-    Ok(scene.style.grow_hair(scene.grown_strands())?)
 }

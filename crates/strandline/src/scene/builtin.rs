@@ -38,10 +38,11 @@ impl Scene {
         self.style = StyleSettings { seed, strand_count, ..StyleSettings::new(style) };
         self.groom.points_per_strand = style.points_per_strand();
         self.level_of_detail.segments_per_span = segments_per_span(self.groom.points_per_strand);
-        // Hairs of a face are fewer than those of a head; other numbers are the user's.
+        // Hairs of a face are fewer than those of a head, and lashes half as thick again; other numbers are the user's.
         let hairs = |style| match style {
             Style::Beard => 25_000,
             Style::Brows => 1_500,
+            Style::Lashes => 550,
             _ => 100_000,
         };
         if Style::ALL.into_iter().any(|style| hairs(style) == self.look.hair_count) {
