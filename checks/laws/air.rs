@@ -89,7 +89,7 @@ law! {
                 let middle = 0.5 * (low + high);
                 if across(diameter, middle) < weight { low = middle } else { high = middle }
             }
-            for rate in [60.0, 480.0, 120.0, 240.0].into_iter().take(on.either(4, 2)) {
+            for rate in [60.0, 240.0, 120.0, 480.0].into_iter().take(on.either(4, 2)) {
                 let mut rig = loose(on, &airy(1.0 / rate, radius));
                 rig.steps(&vec![Drive::default(); (0.8 * rate) as usize]);
                 let speed = -f64::from(rig.state().velocities[COUNT / 2].get(0).y);

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes the strips of bodies that move, docs/gallery/{smile,look,nod,animal}.png: contact sheets of four frames of the scenes in
+# Makes the strips of bodies that move, docs/gallery/{smile,look,nod,shrug,animal}.png: contact sheets of four frames of the scenes in
 # docs/gallery/bodies and of the animal's example.
 #   docs/gallery/bodies.sh
 # STRANDLINE_PROGRAM names a program that is built already.
@@ -11,7 +11,7 @@ if [ -z "$program" ]; then
     program=target/release/strandline
 fi
 cargo run -p strandline-body --example animal -- out/animal
-for name in smile look nod; do
+for name in smile look nod shrug; do
     "$program" render --scene "docs/gallery/bodies/$name.toml" --out "out/$name"
     cp "out/$name/sheet.png" "docs/gallery/$name.png"
 done

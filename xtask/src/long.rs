@@ -10,7 +10,7 @@ use crate::cargo::{cargo_command, root};
 use crate::{adapter, bare, python, web};
 
 /// Long tests: an environment, and the words for cargo behind `test --workspace --test`.
-const TESTS: [((&str, &str), [&str; 2]); 9] = [
+const TESTS: [((&str, &str), [&str; 2]); 11] = [
     // Each command is ended as often as this, at random times.
     (("STRANDLINE_KILLS", "52"), ["reliability", "kills::"]),
     // Seconds of random clicks, keys and files.
@@ -26,7 +26,11 @@ const TESTS: [((&str, &str), [&str; 2]); 9] = [
     (("STRANDLINE_FULL", "1"), ["laws", "skin_depth::"]),
     // A minute of shaking on the CPU.
     (("STRANDLINE_FULL", "1"), ["laws", "shake::a_minute"]),
-    // More styles on a software adapter, and steps down to 1/480 s.
+    // Ten minutes of it on the CPU.
+    (("STRANDLINE_FULL", "1"), ["laws", "rod_mechanics::a_rod_shaken_at_twenty_g"]),
+    // Every style, and more strands of each.
+    (("STRANDLINE_FULL", "1"), ["laws", "styles::"]),
+    // All styles on the CPU, more on a software adapter, and steps down to 1/480 s.
     (("STRANDLINE_FULL", "1"), ["laws", "rod_styles::"]),
 ];
 

@@ -33,6 +33,8 @@ pub(super) struct Cover {
     pub name: String,
     /// The setting of the scene: true presses hair, false leaves it, none lets the roots under it decide.
     pub covers: Option<bool>,
+    /// True if hair hits it.
+    pub is_solid: bool,
 }
 
 /// Presses the strands of a groom that start under a part beneath it, for each of some parts. Returns notes.
@@ -170,7 +172,7 @@ mod tests {
         let groom = style.grow().unwrap();
         let mesh = cap(size, &skull);
         let mut pressed = groom.clone();
-        let part = Cover { mesh: mesh.clone(), name: "hat.obj".to_owned(), covers };
+        let part = Cover { mesh: mesh.clone(), name: "hat.obj".to_owned(), covers, is_solid: true };
         let notes = press(&mut pressed, &[part], Some(&skull));
         (groom, pressed, mesh, notes)
     }

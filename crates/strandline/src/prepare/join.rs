@@ -45,12 +45,11 @@ pub(super) fn add_meshes(
         if part.visible {
             drawn.append(&mesh)?;
         }
-        if let Some(solid) = &mut solid
-            && part.solid.unwrap_or_else(|| mesh.is_closed())
-        {
+        let is_solid = part.solid.unwrap_or_else(|| mesh.is_closed());
+        if let Some(solid) = solid.as_mut().filter(|_| is_solid) {
             solid.append(&mesh)?;
         }
-        covers.push(Cover { mesh, name: part.file.display().to_string(), covers: part.covers });
+        covers.push(Cover { mesh, name: part.file.display().to_string(), covers: part.covers, is_solid });
     }
     Ok((solid, covers, starts))
 }

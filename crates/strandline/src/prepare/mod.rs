@@ -72,6 +72,8 @@ pub struct Prepared {
     pub tags: Tags,
     /// The drawn body.
     pub mesh: Option<Mesh>,
+    /// The body where it moves and is not drawn: its skin carries the roots.
+    pub(crate) hidden: Option<Mesh>,
     /// Everything that hair hits.
     pub colliders: Vec<Collider>,
     /// Motion of the head.
@@ -197,10 +199,11 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
     let load = |file: &std::path::PathBuf| HairPose::load(&scene.path(file), shape, vertices);
     let pose = scene.groom.pose.as_ref().map(load).transpose()?;
     let neck = mesh.as_ref().and_then(|mesh| mesh.neck);
-    let mesh = mesh.filter(|_| scene.body.visible);
+    let (mesh, hidden) =
+        if scene.body.visible { (mesh, None) } else { (None, mesh.filter(|_| skin.is_some())) };
     let bounds = bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh.as_ref());
     let head = head_motion(&scene, pivot, bounds)?.with_body(skin).with_neck(neck);
-    Ok(Prepared { guides, bound, tags, mesh, colliders, head, pose, bounds, scene, placement, notes })
+    Ok(Prepared { guides, bound, tags, mesh, hidden, colliders, head, pose, bounds, scene, placement, notes })
 }
 
 impl Prepared {

@@ -1,10 +1,13 @@
 //! Fourth stage of loading: everything that hair hits.
 
+use std::borrow::Cow;
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::Vec3;
 use strandline_base::cache;
 
+use super::cover::Cover;
 use super::grown::has_form_of_style;
 use super::loading::Loading;
 use super::placing::place_mesh;
@@ -107,6 +110,13 @@ fn own_shape(loading: &mut Loading) -> Result<Shape, Error> {
                     "body.collider_file is all that hair hits: solid body.parts are only drawn".to_owned(),
                 );
             }
+            if loading.motion.is_some() {
+                loading.notes.push(
+                    "body.collider_file rides the head and keeps its shape while the body moves: without it hair hits the \
+                     moving skin"
+                        .to_owned(),
+                );
+            }
             kept_grid(&mesh, body.spacing)?
         }
         (None, mesh) => kept_grid(mesh.unwrap_or(&Mesh::default()), body.spacing)?,
@@ -114,9 +124,41 @@ fn own_shape(loading: &mut Loading) -> Result<Shape, Error> {
     let follows = loading.motion.is_some() && body.collider_file.is_none();
     let shape = grid_shape(loading, grid);
     match (loading.mesh.as_ref().filter(|_| follows), shape) {
-        (Some(mesh), Shape::Grid(grid)) => Ok(Shape::Skin(Arc::new(SkinSolid::new(mesh, grid)?))),
+        (Some(mesh), Shape::Grid(grid)) => {
+            let note = hidden_solids(loading);
+            let skin = solid_skin(mesh, &loading.part_starts, &loading.covers);
+            let solid = SkinSolid::new(&skin, grid)?;
+            loading.notes.extend(note);
+            Ok(Shape::Skin(Arc::new(solid)))
+        }
         (_, shape) => Ok(shape),
     }
+}
+
+/// The drawn mesh with the triangles that hair hits alone: not those of parts that are not solid.
+fn solid_skin<'a>(mesh: &'a Mesh, starts: &[Option<usize>], parts: &[Cover]) -> Cow<'a, Mesh> {
+    let range = |(start, part): (&Option<usize>, &Cover)| {
+        start.filter(|_| !part.is_solid).map(|start| start..start + part.mesh.positions.len())
+    };
+    let open: Vec<Range<usize>> = starts.iter().zip(parts).filter_map(range).collect();
+    if open.is_empty() {
+        return Cow::Borrowed(mesh);
+    }
+    let is_solid = |corners: &&[u32; 3]| {
+        !open.iter().any(|range| corners.iter().any(|&index| range.contains(&(index as usize))))
+    };
+    let triangles = mesh.triangles.iter().filter(is_solid).copied().collect();
+    Cow::Owned(Mesh { triangles, ..mesh.clone() })
+}
+
+/// A note on solid parts that are not drawn: a moving skin is the drawn one.
+fn hidden_solids(loading: &Loading) -> Option<String> {
+    let hidden = |(start, part): (&Option<usize>, &Cover)| {
+        (start.is_none() && part.is_solid).then(|| part.name.clone())
+    };
+    let names: Vec<String> = loading.part_starts.iter().zip(&loading.covers).filter_map(hidden).collect();
+    let list = names.join(", ");
+    (!names.is_empty()).then(|| format!("{list}: hair does not hit what is not drawn of a body that moves"))
 }
 
 /// A grid as a solid. Adds a note where it is coarser than the scene asks for.

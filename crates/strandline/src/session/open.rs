@@ -115,7 +115,7 @@ impl Session<Inline> {
         prepared.scene.check()?;
         let picture = prepared.scene.picture;
         let camera = prepared.camera(picture.width as f32 / picture.height as f32);
-        let Prepared { guides, bound, mesh, colliders, head, pose, scene, tags, .. } = prepared;
+        let Prepared { guides, bound, mesh, hidden, colliders, head, pose, scene, tags, .. } = prepared;
         let (origin, colliders) = about(head.origin_at(scene.film.start), colliders);
         let bound =
             bound.map(|bound| if origin == Vec3::ZERO { bound } else { bound.among(colliders.clone()) });
@@ -131,6 +131,9 @@ impl Session<Inline> {
         session.set_picture(picture)?;
         let scales = vec![scene.groom.length; session.view.guides.strand_count()];
         let simulation = session.executor.simulation_mut();
+        if let Some(mesh) = hidden {
+            simulation.skin = SkinCarrier::new(Some(Arc::new(mesh)), &session.view.guides);
+        }
         (simulation.origin, simulation.hairs) = (origin, hairs);
         if scene.groom.length != 1.0 {
             simulation.engine.begin_with_lengths(&scales)?;

@@ -1,6 +1,8 @@
 //! Bodies that move by themselves: clips, vertices in memory and files of vertices.
 #![allow(clippy::disallowed_methods)] // what is held to others may be rounded
 
+mod solids;
+
 use std::path::{Path, PathBuf};
 
 use glam::{Quat, Vec3};
@@ -93,10 +95,8 @@ fn the_motion_of_the_head_carries_a_body_that_moves() {
     assert_eq!(alone.world_from_head(), Pose::IDENTITY, "a smile does not move the scalp");
     assert_eq!(both.skin(), alone.skin());
     assert!(both.world_from_head().direction(Vec3::Z).x > 0.8);
-    let corner = smiles
-        .mesh
-        .unwrap()
-        .positions
+    let rest = smiles.mesh.unwrap().positions;
+    let corner = rest
         .iter()
         .zip(alone.skin().unwrap().iter())
         .map(|(rest, now)| rest.distance(*now))
