@@ -97,6 +97,8 @@ fn bare(head: &mut Head, mannequin: &Mannequin, camera: &Camera) -> (f32, f32) {
     let layers = head.seen(camera, &look, &[light]);
     let covered = channel(&layers, "mask.hair");
     let scalp = mannequin.scalp();
+    // Hair that is combed back or from the whorl has no parting.
+    let parted = PARTED.contains(&head.scene.style.style);
     let (mut haired, mut open) = (0.0, 0.0);
     let mut shown = Linear::of(&layers);
     for (pixel, share) in covered.iter().enumerate() {
@@ -112,7 +114,7 @@ fn bare(head: &mut Head, mannequin: &Mannequin, camera: &Camera) -> (f32, f32) {
         let Some(skin) = skin.filter(|skin| scalp.contains(*skin) && scalp.depth(*skin) > THIN) else {
             continue;
         };
-        if (skin.x - head.scene.style.parting).abs() < PARTING && skin.y > 0.03 {
+        if parted && (skin.x - head.scene.style.parting).abs() < PARTING && skin.y > 0.03 {
             continue;
         }
         haired += 1.0;
@@ -126,6 +128,10 @@ fn bare(head: &mut Head, mannequin: &Mannequin, camera: &Camera) -> (f32, f32) {
     );
     (haired, open)
 }
+
+/// Styles with a parting.
+const PARTED: [Style; 6] =
+    [Style::Bob, Style::Long, Style::Wavy, Style::Curly, Style::SideSwept, Style::Coils];
 
 /// Styles whose hair covers the head.
 fn full(style: &Style) -> bool {

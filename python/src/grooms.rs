@@ -169,7 +169,7 @@ pub fn load<'py>(
 pub fn grow<'py>(py: Python<'py>, scene: &str) -> PyResult<Bound<'py, PyDict>> {
     let scene = scenes::parsed(py, scene, Path::new(""))?;
     let strands = scene.groom.bound.map_or(0, |bound| bound as usize);
-    let groom = errors::run(py, || Ok(scene.style.grow_hair(strands)?))?;
+    let groom = errors::run(py, || scene.grow(strands))?;
     dictionary(py, groom)
 }
 

@@ -10,7 +10,7 @@ use crate::cargo::{cargo_command, root};
 use crate::{adapter, bare, python, web};
 
 /// Long tests: an environment, and the words for cargo behind `test --workspace --test`.
-const TESTS: [((&str, &str), [&str; 2]); 11] = [
+const TESTS: [((&str, &str), [&str; 2]); 14] = [
     // Each command is ended as often as this, at random times.
     (("STRANDLINE_KILLS", "52"), ["reliability", "kills::"]),
     // Seconds of random clicks, keys and files.
@@ -29,7 +29,10 @@ const TESTS: [((&str, &str), [&str; 2]); 11] = [
     // Ten minutes of it on the CPU.
     (("STRANDLINE_FULL", "1"), ["laws", "rod_mechanics::a_rod_shaken_at_twenty_g"]),
     // Every style, and more strands of each.
-    (("STRANDLINE_FULL", "1"), ["laws", "styles::"]),
+    (("STRANDLINE_FULL", "1"), ["laws", "drawn_strands_"]),
+    (("STRANDLINE_FULL", "1"), ["program", "exported::"]),
+    (("STRANDLINE_FULL", "1"), ["pictures", "scalp::"]),
+    (("STRANDLINE_FULL", "1"), ["pictures", "heads::"]),
     // All styles on the CPU, more on a software adapter, and steps down to 1/480 s.
     (("STRANDLINE_FULL", "1"), ["laws", "rod_styles::"]),
 ];

@@ -242,6 +242,10 @@ pub struct GroomOptions {
     pub seed: u64,
     #[arg(long, value_name = "FILE", help = format!("The {} file to write", written()))]
     pub out: PathBuf,
+    /// Set a value of the style or of the head that it grows on: `style.length=0.3`, `body.build=broad`,
+    /// `body.eyes=closed`; docs/scene.md lists the keys. Given again: further values. A key alone is explained.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub values: Vec<String>,
 }
 
 #[derive(Args, Debug)]

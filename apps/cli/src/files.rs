@@ -2,28 +2,42 @@
 
 use strandline::file::counted;
 use strandline::mesh::{Material, MeshFormat};
-use strandline::{Groom, Mesh, format, settings::StyleSettings};
+use strandline::{Groom, Mesh, Scene, format};
 
-use crate::arguments::{GroomOptions, InfoOptions, SceneOptions};
+use crate::arguments::{GroomOptions, InfoOptions, SceneOptions, Set, Usage};
 use crate::inputs;
 use crate::output::{self, print_line};
 use crate::progress::Waiting;
 
 /// Grows a style and writes it.
 pub fn groom(options: &GroomOptions) -> anyhow::Result<()> {
-    let settings = StyleSettings {
-        strand_count: options.guides.map_or(options.strands, |guides| guides.min(options.strands)) as usize,
-        seed: options.seed,
-        ..StyleSettings::new(options.style)
-    };
+    let mut scene = Scene::demo();
+    scene.set_style(options.style);
+    scene.style.strand_count =
+        options.guides.map_or(options.strands, |guides| guides.min(options.strands)) as usize;
+    scene.style.seed = options.seed;
+    if let Some(other) = options.values.iter().find(|value| !of_style(value)) {
+        let mend =
+            "strandline groom takes keys of `style`, `body.build`, `body.eyes` and `groom.points_per_strand`";
+        return Err(Usage(format!("--set {other}: {mend}")).into());
+    }
+    Set { values: options.values.clone() }.apply(&mut scene)?;
     let waiting = Waiting::begin("growing strands");
-    let mut groom = settings.grow_hair(options.strands as usize)?;
+    let mut groom = scene.grow(options.strands as usize)?;
     if options.guides.is_some() {
         // As a scene draws them.
-        groom = groom.resampled(options.style.points_per_strand() as usize)?;
+        groom = groom.resampled(scene.groom.points_per_strand as usize)?;
     }
     drop(waiting);
     write(&groom, &options.out)
+}
+
+/// True for a setting of the style or of the head that it grows on, `KEY=VALUE`; not for those that have options.
+fn of_style(setting: &str) -> bool {
+    let key = setting.split('=').next().unwrap_or_default().trim();
+    let has_option = ["style.style", "style.strand_count", "style.seed"].contains(&key);
+    let of_head = ["body.build", "body.eyes", "groom.points_per_strand"].contains(&key);
+    key.starts_with("style.") && !has_option || of_head
 }
 
 pub(crate) fn write(groom: &Groom, path: &std::path::Path) -> anyhow::Result<()> {

@@ -63,7 +63,10 @@ impl StyleSettings {
         if self.style.is_of_face() {
             let grown = face::strands(self, &Skin::new(mannequin), 0, self.strand_count.max(drawn));
             let grown = grown.into_iter().map(|strand| Grown::new(strand, 0));
-            return Ok(groom(grown.collect(), self.strand_count));
+            let mut groom = groom(grown.collect(), self.strand_count);
+            // Beside hair of other files it is named.
+            groom.group_names = [(0, self.style.name().to_owned())].into();
+            return Ok(groom);
         }
         let skin = Skin::new(mannequin.clone());
         let scalp = mannequin.scalp();

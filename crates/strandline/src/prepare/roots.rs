@@ -1,9 +1,5 @@
 //! Fifth stage of loading: roots on the skin.
 
-use std::sync::Arc;
-
-use strandline_body::Mannequin;
-
 use super::{cover, guess, loading::Loading, marked, wrap};
 use crate::{Error, groom::Groom};
 
@@ -50,12 +46,9 @@ fn brush(loading: &mut Loading) {
 
 /// The style, on the body of a source or on the mannequin.
 fn grown(loading: &mut Loading) -> Result<Groom, Error> {
-    let (scene, body) = (&loading.scene, &loading.scene.body);
+    let scene = &loading.scene;
     if loading.own_mesh().is_none() {
-        // On the face and over the shoulders of its build.
-        return Ok(scene
-            .style
-            .grow_on(Arc::new(Mannequin::of(body.build, body.eyes)), scene.grown_strands())?);
+        return scene.grow(scene.grown_strands());
     }
     let mut groom = scene.style.grow_hair(scene.grown_strands())?;
     let marked = marked::scalp(loading)?;

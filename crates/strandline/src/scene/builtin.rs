@@ -1,4 +1,5 @@
 use std::str::FromStr;
+use std::sync::Arc;
 
 use glam::Vec3;
 use strandline_base::{SettingError, Value};
@@ -7,7 +8,8 @@ use super::groom::{filling, grown};
 use super::{FilmSection, GroomSection, MotionName, Scene};
 use crate::{
     Error,
-    groom::{Style, StyleSettings},
+    body::Mannequin,
+    groom::{Groom, Style, StyleSettings},
     render::{Background, Coat, LevelOfDetail, Preset, ToneMap},
     sim::{
         Settings, StrandMethod,
@@ -19,6 +21,15 @@ impl Scene {
     /// Strands that the scene's style grows in all.
     pub(crate) fn grown_strands(&self) -> usize {
         grown(self.style.strand_count, self.groom.bound)
+    }
+
+    /// Grows so many strands of the scene's style, its guides first, on the build of its mannequin: head space \[m\].
+    ///
+    /// # Errors
+    /// A setting of the style outside its range; more memory than may be taken.
+    pub fn grow(&self, strands: usize) -> Result<Groom, Error> {
+        let mannequin = Mannequin::of(self.body.build, self.body.eyes);
+        Ok(self.style.grow_on(Arc::new(mannequin), strands)?)
     }
 
     /// The demo: the default style shakes its head for 4 s. An empty scene file is the same scene.
