@@ -1,10 +1,11 @@
 //! Strands among strands: bundles that lie on bundles, a strand on rails. On the CPU, the only backend that has contacts.
 
 use glam::Vec3;
+use strandline_body::Pose;
 use strandline_checks::{On, Rig};
 use strandline_groom::{Groom, Guides, LANES, RestShape};
 use strandline_sim::rods::Rest;
-use strandline_sim::{ContactReport, Drag, Drive, Model, Settings, State, VolumeSettings};
+use strandline_sim::{ContactReport, CpuRunner, Drag, Drive, Model, Settings, State, VolumeSettings};
 
 /// Radius of a wisp \[m\].
 const RADIUS: f32 = 1.25e-3;
@@ -86,6 +87,24 @@ fn a_bundle_rests_on_the_one_beneath_it() {
     }
     let (contacts, _, heights) = rested(0.0, &Settings { contact: Default::default(), ..settings() }, 150);
     assert!(contacts.is_none() && passed(&heights) == SIDE * SIDE, "without contact all fall through");
+}
+
+#[test]
+fn contacts_do_not_depend_on_when_near_segments_were_looked_for() {
+    // Let fall, which looks in each part of a step, then at rest, which keeps a list.
+    let model = bundles(0.005, &settings());
+    let mut kept = CpuRunner::from(model.clone());
+    let mut states = [model.rest_state(Pose::IDENTITY), model.rest_state(Pose::IDENTITY)];
+    let (mut pairs, mut still) = (0, 0);
+    for step in 0..150 {
+        let drive = Drive::default();
+        let report = kept.step(&mut states[0], &drive);
+        CpuRunner::from(model.clone()).step(&mut states[1], &drive);
+        assert!(states[0].positions == states[1].positions, "step {step}");
+        pairs = pairs.max(report.contacts.unwrap().pairs);
+        still += usize::from(report.speed_mean < 0.01);
+    }
+    assert!(pairs > 20 && still > 10, "{pairs} pairs, {still} still steps");
 }
 
 /// Way \[m\] in half a second of a loose strand on two rails that do not move, under gravity with a slope along them.

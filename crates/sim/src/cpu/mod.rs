@@ -25,6 +25,7 @@ mod fall;
 pub(crate) mod length_pass;
 mod rod_air;
 mod rod_crowd;
+mod rod_neighbours;
 mod rod_pairs;
 mod rod_parts;
 mod rod_pulls;

@@ -5,7 +5,7 @@ use glam::Vec3;
 use strandline_base::par::prelude::*;
 use strandline_groom::{LANES, Vec3Lanes};
 
-use super::rod_pairs::Neighbours;
+use super::rod_neighbours::Neighbours;
 use super::rod_room::Room;
 use super::rod_strands::Hair;
 use crate::ContactReport;

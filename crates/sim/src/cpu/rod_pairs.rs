@@ -2,171 +2,123 @@
 
 use glam::Vec3;
 use strandline_base::par::prelude::*;
-use strandline_groom::{LANES, Vec3Lanes};
+use strandline_groom::LANES;
 
 use super::rod_strands::Hair;
-use crate::wisps::boxes::{Around, Boxes};
 use crate::wisps::pair::{Near, Pair};
-use crate::wisps::place::{Ends, look};
-use crate::wisps::radii::number;
+use crate::wisps::place::{Ends, NEAR, Place, between, least_distance, look, nearest};
 
-/// Way of hair against the head in a part over which a list of candidates is kept for some of them, and the least and the
-/// greatest such way \[m\].
-const KEPT_PARTS: f32 = 3.0;
-const LEAST_MARGIN: f32 = 1e-3;
-const MOST_MARGIN: f32 = 6e-3;
-/// Radius over a wisp's own within which pairs are candidates: a little more than `look` asks for.
-const WIDER: f32 = 1.4;
 /// Stiffness with which a round holds a place over its mass and the square of the part.
 const HELD: f32 = 1.0;
 /// Share of a depth that a part takes back, and the speed \[m/s\] with which it does so at most.
 const TAKEN_BACK: f32 = 0.3;
 const FASTEST_BACK: f32 = 0.1;
-/// Candidates that a thread takes at a time.
-const CHUNK: usize = 512;
+/// Segments that a thread takes at a time.
+const CHUNK: usize = 2048;
 
-/// Candidates, kept while no point moves far against the head.
-#[derive(Clone, Default)]
-pub(super) struct Neighbours {
-    boxes: Boxes,
-    around: Vec<Around>,
-    candidates: Vec<[u32; 2]>,
-    /// Places \[m\] when they were found, in the frame of the head, and the way that a point may move from there.
-    built: Vec<Vec3Lanes>,
-    margin: f32,
+/// A point in a part of a step.
+#[derive(Clone, Copy, Default)]
+#[repr(align(32))]
+pub(super) struct Point {
+    /// Place \[m\] where the part begins, and way at the velocity of before \[m\].
+    pub(super) start: Vec3,
+    pub(super) coast: Vec3,
 }
 
-impl Neighbours {
-    /// Replaces `near` by the pairs that touch, or may come to touch in a part whose strands lie at `start` and go on by
-    /// `coast` \[m\]; `pairs` are those of the part before.
-    pub(super) fn find(
-        &mut self,
-        hair: &Hair,
-        (start, coast): (&[Vec3Lanes], &[Vec3Lanes]),
-        part: u32,
-        pairs: &[Pair],
-        near: &mut Vec<Near>,
-    ) {
-        self.refresh(hair, (start, coast), part);
-        let look = Look { hair, start, coast, pairs, time_step: hair.parts.time_step as f32 };
-        let found: Vec<Vec<Near>> = self
-            .candidates
-            .par_chunks(CHUNK)
-            .map(|candidates| candidates.iter().filter_map(|pair| look.at(*pair)).collect())
-            .collect();
-        near.clear();
-        found.iter().for_each(|found| near.extend_from_slice(found));
+impl Point {
+    /// Ends of two segments and their ways, of points by the numbers of their lanes.
+    #[inline]
+    pub(super) fn ends(points: &[Self], segments: [u32; 2]) -> (Ends, Ends) {
+        let [one, other] = segments.map(|segment| segment as usize);
+        let all = [&points[one], &points[one + LANES], &points[other], &points[other + LANES]];
+        (all.map(|point| point.start), all.map(|point| point.coast))
     }
+}
 
-    /// Finds the candidates again where hair has moved too far.
-    fn refresh(&mut self, hair: &Hair, (start, coast): (&[Vec3Lanes], &[Vec3Lanes]), part: u32) {
-        let [before, after] = hair.parts.head_through(part).map(|pose| pose.inverse());
-        let points = hair.model.points_per_strand;
-        let local = |index: usize, lane: usize| {
-            let here = start[index].get(lane);
-            [before.point(here), after.point(here + coast[index].get(lane))]
-        };
-        let moved = |way: &(dyn Fn(usize, usize) -> f32 + Sync)| {
-            let of_block = |block: usize| {
-                let live = hair.model.live_lanes(block);
-                let indices = block * points..(block + 1) * points;
-                indices
-                    .flat_map(|index| (0..live).map(move |lane| (index, lane)))
-                    .fold(0.0_f32, |most, (index, lane)| most.max(way(index, lane)))
-            };
-            (0..start.len() / points).into_par_iter().map(of_block).reduce(|| 0.0, f32::max)
-        };
-        if self.built.len() == start.len() {
-            let built = &self.built;
-            let far = moved(&|index, lane| {
-                let [from, to] = local(index, lane);
-                let built = built[index].get(lane);
-                from.distance(built).max(to.distance(built))
-            });
-            if far <= self.margin {
-                return;
-            }
+/// Replaces `directions` by two unit vectors across the segment at each point.
+pub(super) fn across(points: &[Point], directions: &mut [[Vec3; 2]]) {
+    directions.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, directions)| {
+        for (index, directions) in directions.iter_mut().enumerate() {
+            let segment = chunk * CHUNK + index;
+            let Some(end) = points.get(segment + LANES) else { continue };
+            let along = (end.start - points[segment].start).normalize_or(Vec3::X);
+            let one = along.any_orthonormal_vector();
+            *directions = [one, along.cross(one)];
         }
-        let fastest = moved(&|index, lane| {
-            let [from, to] = local(index, lane);
-            from.distance(to)
-        });
-        self.margin = (KEPT_PARTS * fastest).clamp(LEAST_MARGIN, MOST_MARGIN);
-        self.build(hair, &local);
-    }
+    });
+}
 
-    fn build(&mut self, hair: &Hair, local: &dyn Fn(usize, usize) -> [Vec3; 2]) {
-        let Self { boxes, around, candidates, built, margin } = self;
-        let (points, model) = (hair.model.points_per_strand, hair.model);
-        built.resize(model.positions.len(), Vec3Lanes::default());
-        around.clear();
-        for block in 0..built.len() / points {
-            let live = model.live_lanes(block);
-            for point in 0..points {
-                let index = block * points + point;
-                for lane in 0..live {
-                    let [from, to] = local(index, lane);
-                    built[index].set(lane, to);
-                    let (low, high) = (from.min(to), from.max(to));
-                    if point > 0
-                        && let Some(before) = around.len().checked_sub(live)
-                    {
-                        let before = &mut around[before];
-                        // The box of the segment that ends here.
-                        (before.low, before.high) = (before.low.min(low), before.high.max(high));
-                    }
-                    if point + 1 < points {
-                        let segment = number(block, point, points, lane);
-                        let strand = (block * LANES + lane) as u32;
-                        around.push(Around { low, high, segment, strand });
-                    }
-                }
-            }
+/// False for two segments that stay further apart than a distance \[m\], seen along two directions across the first: where
+/// they are, or if they are moving on all of their way.
+#[inline]
+pub(super) fn may_meet(
+    points: &[Point],
+    directions: &[[Vec3; 2]],
+    segments: [u32; 2],
+    moving: bool,
+    distance: f32,
+) -> bool {
+    let (start, ways) = Point::ends(points, segments);
+    let [one, other] = [start[2] - start[0], start[3] - start[0]];
+    directions[segments[0] as usize].iter().all(|direction| {
+        let (c, d) = (direction.dot(one), direction.dot(other));
+        let (mut low, mut high) = (c.min(d), c.max(d));
+        if moving {
+            let [a, b, c, d] = ways.map(|way| direction.dot(way));
+            low += (c.min(d) - a.max(b)).min(0.0);
+            high += (c.max(d) - a.min(b)).max(0.0);
         }
-        for one in around.iter_mut() {
-            let radius = model.radii[one.segment as usize / LANES].0[one.segment as usize % LANES];
-            let wider = Vec3::splat(WIDER * radius + *margin);
-            (one.low, one.high) = (one.low - wider, one.high + wider);
-        }
-        around.retain(|one| one.low.is_finite() && one.high.is_finite());
-        boxes.pairs(around, candidates);
-        let rigid = |segment: u32| {
-            let (index, lane) = (segment as usize / LANES, segment as usize % LANES);
-            [index, index + 1].iter().all(|at| model.inverse_mass[*at].0[lane] == 0.0)
-        };
-        candidates.retain(|[one, other]| !(rigid(*one) && rigid(*other)));
-    }
+        low <= distance && high >= -distance
+    })
 }
 
 /// Hair in a part of a step, as its pairs are looked at.
-struct Look<'a> {
+pub(super) struct Look<'a> {
     hair: &'a Hair<'a>,
-    start: &'a [Vec3Lanes],
-    coast: &'a [Vec3Lanes],
+    points: &'a [Point],
     pairs: &'a [Pair],
     time_step: f32,
 }
 
-impl Look<'_> {
-    fn at(&self, segments: [u32; 2]) -> Option<Near> {
+impl<'a> Look<'a> {
+    /// Of points by the numbers of their lanes, and pairs of the part before.
+    pub(super) fn new(hair: &'a Hair, points: &'a [Point], pairs: &'a [Pair]) -> Self {
+        Self { hair, points, pairs, time_step: hair.parts.time_step as f32 }
+    }
+
+    /// Index of the first pair of before that is not below two segments.
+    pub(super) fn known_from(&self, segments: [u32; 2]) -> usize {
+        self.pairs.partition_point(|pair| pair.segments < segments)
+    }
+
+    /// Way \[m\] of two segments towards each other before they are near, and the pair if they are, or may come to be in the
+    /// part. `known` is the index from [`Look::known_from`] of these or of segments before; it rises.
+    pub(super) fn at(&self, segments: [u32; 2], known: &mut usize) -> (f32, Option<Near>) {
         let places = segments.map(|segment| (segment as usize / LANES, segment as usize % LANES));
-        let ends = |vectors: &[Vec3Lanes]| -> Ends {
-            let [(one, lane), (other, beside)] = places;
-            [
-                vectors[one].get(lane),
-                vectors[one + 1].get(lane),
-                vectors[other].get(beside),
-                vectors[other + 1].get(beside),
-            ]
-        };
         let radius = |(index, lane): (usize, usize)| self.hair.model.radii[index].0[lane];
         let touch = radius(places[0]) + radius(places[1]);
-        let known = || {
-            let found = self.pairs.binary_search_by_key(&segments, |pair| pair.segments);
-            found.ok().map(|found| &self.pairs[found])
-        };
-        let (start, ways) = (ends(self.start), ends(self.coast));
-        let place = look(&start, &ways, touch, || known().map(|pair| Vec3::from(pair.normal)))?;
+        let (start, ways) = Point::ends(self.points, segments);
+        let shares = nearest(&start);
+        let distance = between(&start, shares).length();
+        let away = least_distance(&start, distance) - NEAR * touch;
+        while self.pairs.get(*known).is_some_and(|pair| pair.segments < segments) {
+            *known += 1;
+        }
+        let pair = self.pairs.get(*known).filter(|pair| pair.segments == segments);
+        let side = || pair.map(|pair| Vec3::from(pair.normal));
+        let place = look(&start, &ways, touch, shares, side);
+        let near = place.map(|place| self.near(segments, places, touch, &place, pair));
+        (away, near)
+    }
+
+    fn near(
+        &self,
+        segments: [u32; 2],
+        places: [(usize, usize); 2],
+        touch: f32,
+        place: &Place,
+        pair: Option<&Pair>,
+    ) -> Near {
         let inverse = |side: usize| {
             let (index, lane) = places[side];
             let [one, other] = [index, index + 1].map(|at| self.hair.masses.inverse_mass[at].0[lane]);
@@ -178,8 +130,8 @@ impl Look<'_> {
         let holds = inverse.map(|inverse| if inverse > 0.0 { HELD / (square * inverse) } else { 0.0 });
         let missing = touch - place.gap;
         let (force, slides) =
-            known().map_or((Vec3::ZERO, false), |pair| (turned(pair, place.normal), pair.slides > 0.0));
-        Some(Near {
+            pair.map_or((Vec3::ZERO, false), |pair| (turned(pair, place.normal), pair.slides > 0.0));
+        Near {
             segments,
             shares: place.shares,
             normal: place.normal,
@@ -193,7 +145,7 @@ impl Look<'_> {
             change: Vec3::ZERO,
             slid: slides,
             slides,
-        })
+        }
     }
 }
 
@@ -203,4 +155,40 @@ fn turned(pair: &Pair, normal: Vec3) -> Vec3 {
     let push = before.dot(force).max(0.0);
     let rubs = force - before * push;
     normal * push + (rubs - normal * normal.dot(rubs))
+}
+
+#[cfg(test)]
+mod tests {
+    use strandline_body::Random;
+
+    use super::*;
+
+    #[test]
+    fn segments_that_come_to_touch_are_not_left_out() {
+        let mut random = Random::new(5, 0);
+        let mut vector =
+            |size: f32| Vec3::new(random.unit() - 0.5, random.unit() - 0.5, random.unit() - 0.5) * size;
+        let (mut found, mut left_out) = (0, 0);
+        for _ in 0..20_000 {
+            let mut points = [Point::default(); 2 * LANES + 1];
+            for (index, size) in [(0, 0.01), (LANES, 0.01), (1, 0.01), (LANES + 1, 0.01)] {
+                points[index] = Point { start: vector(size), coast: vector(0.008) };
+            }
+            let mut directions = vec![[Vec3::ZERO; 2]; points.len()];
+            across(&points, &mut directions);
+            let (start, ways) = Point::ends(&points, [0, 1]);
+            let touch = 5e-4;
+            let meets = |moving| may_meet(&points, &directions, [0, 1], moving, NEAR * touch + 1e-6);
+            let shares = nearest(&start);
+            left_out += usize::from(!meets(true));
+            if look(&start, &ways, touch, shares, || None).is_some() {
+                found += 1;
+                assert!(meets(true), "{start:?} {ways:?}");
+            }
+            let distance = between(&start, shares).length();
+            assert!(meets(false) || distance > NEAR * touch, "{start:?}");
+            assert!(least_distance(&start, distance) <= distance);
+        }
+        assert!(found > 100 && left_out > 1000, "{found} touch, {left_out} are left out");
+    }
 }

@@ -1,6 +1,6 @@
 //! Pairs of segments whose boxes meet, by cells.
 
-use glam::{IVec3, Vec3};
+use glam::{IVec3, Vec3, Vec4};
 use strandline_base::par::prelude::*;
 
 use crate::cells::grid::REACH;
@@ -9,6 +9,8 @@ use crate::cells::grid::REACH;
 const MOST_CELLS: i32 = 8;
 /// Boxes whose pairs one thread looks for at a time.
 const CHUNK: usize = 256;
+/// Entries of buckets that a thread copies at a time.
+const ENTRIES: usize = 4096;
 
 /// A box about the way of a segment.
 #[derive(Clone, Copy, Debug)]
@@ -21,14 +23,8 @@ pub struct Around {
     pub strand: u32,
 }
 
-impl Around {
-    fn meets(&self, other: &Self) -> bool {
-        self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
-    }
-}
-
 /// Cells that boxes take, from the first to the last along each axis.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Range {
     first: IVec3,
     last: IVec3,
@@ -37,31 +33,53 @@ struct Range {
 /// Boxes sorted by buckets of cells, and the room for it.
 #[derive(Clone, Debug, Default)]
 pub struct Boxes {
+    ranges: Vec<Range>,
     /// First box of each bucket.
     starts: Vec<u32>,
-    /// Indices of boxes, bucket after bucket, rising.
+    /// Indices of boxes, bucket after bucket, rising, and their corners \[m\].
     order: Vec<u32>,
+    corners: Vec<[Vec4; 2]>,
+    found: Vec<Vec<Met>>,
+}
+
+/// Two segments whose boxes meet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Met {
+    /// Their numbers, the lower one first.
+    pub segments: [u32; 2],
+    /// Distance \[m\] that the one who looks for pairs gives them.
+    pub distance: f32,
 }
 
 impl Boxes {
-    /// Replaces `pairs` by the segments of all boxes of different strands that meet, each pair once, the lower number
-    /// first, in rising order. Segments of boxes rise.
-    pub fn pairs(&mut self, boxes: &[Around], pairs: &mut Vec<[u32; 2]>) {
+    /// Replaces `pairs` by the segments of all boxes of different strands that meet and have a distance by `judge`, each
+    /// pair once, the lower number first, in rising order. Segments of boxes rise.
+    pub fn pairs(
+        &mut self,
+        boxes: &[Around],
+        judge: impl Fn([u32; 2]) -> Option<f32> + Sync,
+        pairs: &mut Vec<Met>,
+    ) {
         pairs.clear();
         let Some(per_metre) = cells_per_metre(boxes) else { return };
-        let ranges: Vec<Range> = boxes.par_iter().map(|one| range(one, per_metre)).collect();
+        let mut ranges = std::mem::take(&mut self.ranges);
+        boxes.par_iter().map(|one| range(one, per_metre)).collect_into_vec(&mut ranges);
         let buckets = self.sort(&ranges);
-        let found: Vec<Vec<[u32; 2]>> = (0..boxes.len().div_ceil(CHUNK))
-            .into_par_iter()
-            .map(|chunk| {
-                let mut found = Vec::new();
-                for one in chunk * CHUNK..((chunk + 1) * CHUNK).min(boxes.len()) {
-                    self.partners(one, boxes, &ranges, buckets, &mut found);
-                }
-                found
-            })
-            .collect();
+        let corners = |index: &u32| {
+            let one = &boxes[*index as usize];
+            [one.low.extend(0.0), one.high.extend(0.0)]
+        };
+        self.order.par_iter().with_min_len(ENTRIES).map(corners).collect_into_vec(&mut self.corners);
+        let mut found = std::mem::take(&mut self.found);
+        found.resize_with(boxes.len().div_ceil(CHUNK), Vec::new);
+        found.par_iter_mut().enumerate().for_each(|(chunk, found)| {
+            found.clear();
+            for one in chunk * CHUNK..((chunk + 1) * CHUNK).min(boxes.len()) {
+                self.partners(one, (boxes, &ranges), buckets, &judge, found);
+            }
+        });
         found.iter().for_each(|found| pairs.extend_from_slice(found));
+        (self.ranges, self.found) = (ranges, found);
     }
 
     /// Sorts boxes by the buckets of their cells; returns the number of buckets less one.
@@ -92,23 +110,37 @@ impl Boxes {
         mask
     }
 
-    fn partners(&self, one: usize, boxes: &[Around], ranges: &[Range], mask: u32, found: &mut Vec<[u32; 2]>) {
+    fn partners(
+        &self,
+        one: usize,
+        (boxes, ranges): (&[Around], &[Range]),
+        mask: u32,
+        judge: &impl Fn([u32; 2]) -> Option<f32>,
+        found: &mut Vec<Met>,
+    ) {
         let (own, first) = (&boxes[one], found.len());
+        let (low, high) = (own.low.extend(0.0), own.high.extend(0.0));
         for cell in cells(&ranges[one]) {
             let bucket = bucket(cell, mask) as usize;
-            for &other in &self.order[self.starts[bucket] as usize..self.starts[bucket + 1] as usize] {
+            let entries = self.starts[bucket] as usize..self.starts[bucket + 1] as usize;
+            // Indices rise within a bucket.
+            for (corners, &other) in self.corners[entries.clone()].iter().zip(&self.order[entries]).rev() {
                 let other = other as usize;
+                if other <= one {
+                    break;
+                }
                 // Found in the cell of the higher of both lower corners alone.
-                if other > one
+                if (low.cmple(corners[1]) & corners[0].cmple(high)).all()
                     && boxes[other].strand != own.strand
                     && ranges[one].first.max(ranges[other].first) == cell
-                    && own.meets(&boxes[other])
+                    && let segments = [own.segment, boxes[other].segment]
+                    && let Some(distance) = judge(segments)
                 {
-                    found.push([own.segment, boxes[other].segment]);
+                    found.push(Met { segments, distance });
                 }
             }
         }
-        found[first..].sort_unstable();
+        found[first..].sort_unstable_by_key(|met| met.segments);
     }
 }
 
@@ -151,6 +183,12 @@ mod tests {
 
     use super::*;
 
+    impl Around {
+        fn meets(&self, other: &Self) -> bool {
+            self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
+        }
+    }
+
     #[test]
     fn each_pair_of_boxes_that_meet_is_found_once() {
         let mut random = Random::new(7, 0);
@@ -173,11 +211,15 @@ mod tests {
         let mut found = Vec::new();
         let mut room = Boxes::default();
         for _ in 0..2 {
-            room.pairs(&boxes, &mut found);
+            room.pairs(&boxes, |_| Some(0.0), &mut found);
             assert!(expected.len() > 100);
-            assert_eq!(found, expected);
+            assert_eq!(found.iter().map(|met| met.segments).collect::<Vec<_>>(), expected);
         }
-        room.pairs(&[], &mut found);
+        let odd = |segments: [u32; 2]| (segments[0] % 2 == 1).then_some(3.0);
+        room.pairs(&boxes, odd, &mut found);
+        expected.retain(|segments| segments[0] % 2 == 1);
+        assert_eq!(found.iter().map(|met| met.segments).collect::<Vec<_>>(), expected);
+        room.pairs(&[], |_| Some(0.0), &mut found);
         assert!(found.is_empty());
     }
 }

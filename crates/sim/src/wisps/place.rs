@@ -9,7 +9,7 @@ const NO_DIRECTION: f32 = 0.2;
 /// Looks at the way of a pair within a part of a step.
 const LOOKS: usize = 5;
 /// Distance over that of touching within which a pair that does not approach is looked at in a part.
-const NEAR: f32 = 1.15;
+pub const NEAR: f32 = 1.15;
 /// Distance over that of touching beyond which no pair has a memory.
 const REMEMBERED: f32 = 2.0;
 
@@ -40,6 +40,13 @@ pub fn between(ends: &Ends, [s, t]: [f32; 2]) -> Vec3 {
     ends[0] + (ends[1] - ends[0]) * s - (ends[2] + (ends[3] - ends[2]) * t)
 }
 
+/// Distance \[m\] of two segments at the least, where that of their places, which are drawn to the middle of their overlap,
+/// is `distance`.
+pub fn least_distance([a, b, c, d]: &Ends, distance: f32) -> f32 {
+    let drawn = TO_THE_MIDDLE * ((*b - *a).length_squared() + (*d - *c).length_squared());
+    (distance * distance - drawn).max(0.0).sqrt()
+}
+
 /// Plane of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
@@ -52,10 +59,15 @@ pub struct Place {
 }
 
 /// Place where two segments touch, or may come to touch within a part of a step, at a distance `touch` \[m\] of their
-/// axes; none where they stay apart. `start` are their ends at the beginning of the part, `ways` the motion that is
-/// expected; `side` is the normal of before.
-pub fn look(start: &Ends, ways: &Ends, touch: f32, side: impl FnOnce() -> Option<Vec3>) -> Option<Place> {
-    let shares = nearest(start);
+/// axes; none where they stay apart. `start` are their ends at the beginning of the part and `shares` where these are
+/// nearest, `ways` the motion that is expected; `side` is the normal of before.
+pub fn look(
+    start: &Ends,
+    ways: &Ends,
+    touch: f32,
+    shares: [f32; 2],
+    side: impl FnOnce() -> Option<Vec3>,
+) -> Option<Place> {
     let vector = between(start, shares);
     let distance = vector.length();
     if !distance.is_finite() {
@@ -124,6 +136,10 @@ fn crosswise([a, b, c, d]: &Ends) -> Option<Vec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn look(start: &Ends, ways: &Ends, touch: f32, side: impl FnOnce() -> Option<Vec3>) -> Option<Place> {
+        super::look(start, ways, touch, nearest(start), side)
+    }
 
     fn ends(height: f32) -> Ends {
         [Vec3::new(-1.0, height, 0.0), Vec3::new(1.0, height, 0.0), Vec3::NEG_Z, Vec3::Z]

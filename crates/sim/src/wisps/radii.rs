@@ -53,14 +53,16 @@ impl AtRest<'_> {
             }
         }
         let mut pairs = Vec::new();
-        Boxes::default().pairs(&boxes, &mut pairs);
-        for [one, other] in pairs {
+        let distance = |[one, other]: [u32; 2]| {
             let ([a, b], [c, d]) = (self.ends(one), self.ends(other));
             let ends = [a, b, c, d];
-            let half = 0.5 * between(&ends, nearest(&ends)).length();
-            for segment in [one, other] {
+            Some(between(&ends, nearest(&ends)).length())
+        };
+        Boxes::default().pairs(&boxes, distance, &mut pairs);
+        for met in pairs {
+            for segment in met.segments {
                 let radius = &mut radii[segment as usize / LANES].0[segment as usize % LANES];
-                *radius = radius.min(half);
+                *radius = radius.min(0.5 * met.distance);
             }
         }
         radii

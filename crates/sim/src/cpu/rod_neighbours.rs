@@ -1,0 +1,285 @@
+//! Segments that may come to touch: a list that is kept while hair moves little against the head, and one for each part
+//! while it moves much.
+
+use bytemuck::cast_slice;
+use glam::Vec3;
+use strandline_base::par::prelude::*;
+use strandline_body::Pose;
+use strandline_groom::{LANES, Lanes, Vec3Lanes};
+use wide::f32x8;
+
+use super::rod_pairs::{Look, Point, across, may_meet};
+use super::rod_strands::Hair;
+use crate::strands::rods::real::{Real, Vector};
+use crate::strands::rods::workspace::Carry;
+use crate::wisps::boxes::{Around, Boxes, Met};
+use crate::wisps::pair::{Near, Pair};
+use crate::wisps::place::NEAR;
+use crate::wisps::radii::number;
+
+/// Ways of a point in a part that its margin lasts, and the least margin \[m\].
+const LASTS: f32 = 4.0;
+const LEAST_MARGIN: f32 = 3e-4;
+/// Mean way of points in a part \[m\] beyond which no list is kept.
+const CALM: f32 = 2e-4;
+/// Distance \[m\] that is rounding.
+const ROUNDING: f32 = 1e-5;
+/// Candidates and blocks of strands that a thread takes at a time.
+const CHUNK: usize = 1024;
+const BLOCKS: usize = 16;
+
+/// Two segments that may come to touch.
+#[derive(Clone, Copy)]
+struct Candidate {
+    segments: [u32; 2],
+    /// Sum of the ways of both \[m\] from which they have to be looked at again.
+    until: f32,
+}
+
+/// Candidates, and the motion of hair against the head since they were found. What is found does not depend on when
+/// that was.
+#[derive(Clone, Default)]
+pub(super) struct Neighbours {
+    boxes: Boxes,
+    around: Vec<Around>,
+    met: Vec<Met>,
+    candidates: Vec<Candidate>,
+    /// Places of points \[m\] when the list was made and in the part before, and their ways in the part, in the frame of the
+    /// head, shape `[block][point]` of lanes.
+    built: Vec<Vec3Lanes>,
+    last: Vec<Vec3Lanes>,
+    ahead: Vec<Vec3Lanes>,
+    /// Way that a point may move from where it was then \[m\].
+    margins: Vec<Lanes>,
+    /// Way of a segment since then to the start of a part, and to its end \[m\].
+    gone: Vec<Lanes>,
+    reach: Vec<Lanes>,
+    /// Points in the part, by the number of their lane, and two directions across the segment at each.
+    points: Vec<Point>,
+    across: Vec<[Vec3; 2]>,
+    /// Way of a segment \[m\] by which its box is wider.
+    wider: Vec<f32>,
+    found: Vec<Vec<Near>>,
+}
+
+/// Motion of hair against the head in a part.
+#[derive(Clone, Copy)]
+struct Motion {
+    /// True if all points are within their margins.
+    stays: bool,
+    /// Sum of the ways of all points \[m\].
+    ways: f64,
+}
+
+impl Neighbours {
+    /// Replaces `near` by the pairs that touch, or may come to touch in a part whose strands lie at `start` and go on by
+    /// `coast` \[m\]; `pairs` are those of the part before.
+    pub(super) fn find(
+        &mut self,
+        hair: &Hair,
+        motion: (&[Vec3Lanes], &[Vec3Lanes]),
+        part: u32,
+        pairs: &[Pair],
+        near: &mut Vec<Near>,
+    ) {
+        let poses = hair.parts.head_through(part);
+        let turn = poses[0].rotation.angle_between(poses[1].rotation);
+        // Rise of the arc on which a turn of the head takes two segments, which are looked at along its chord.
+        let bow = 0.75 * turn * turn * longest(hair) + ROUNDING;
+        let bent = 1.0 + 0.25 * turn;
+        let Motion { stays, ways } = self.follow(hair, motion, poses, (bow, bent));
+        if !stays {
+            let points = hair.model.strand_count * hair.model.points_per_strand;
+            if ways > f64::from(CALM) * points as f64 {
+                self.search(hair, bow, bent);
+            } else {
+                self.build(hair, bow);
+            }
+        }
+        let look = Look::new(hair, &self.points, pairs);
+        let [gone, reach]: [&[f32]; 2] = [cast_slice(&self.gone), cast_slice(&self.reach)];
+        self.found.resize_with(self.candidates.len().div_ceil(CHUNK), Vec::new);
+        self.candidates.par_chunks_mut(CHUNK).zip(self.found.par_iter_mut()).for_each(
+            |(candidates, found)| {
+                found.clear();
+                let mut known = look.known_from(candidates[0].segments);
+                for candidate in candidates {
+                    let [one, other] = candidate.segments.map(|segment| segment as usize);
+                    if reach[one] + reach[other] + bow < candidate.until {
+                        continue;
+                    }
+                    let (least, near) = look.at(candidate.segments, &mut known);
+                    candidate.until = gone[one] + gone[other] + least;
+                    found.extend(near);
+                }
+            },
+        );
+        near.clear();
+        self.found.iter().for_each(|found| near.extend_from_slice(found));
+    }
+
+    /// Takes note of the motion in a part.
+    fn follow(
+        &mut self,
+        hair: &Hair,
+        (start, coast): (&[Vec3Lanes], &[Vec3Lanes]),
+        poses: [Pose; 2],
+        (bow, bent): (f32, f32),
+    ) -> Motion {
+        let points = hair.model.points_per_strand;
+        self.fit(start.len());
+        let carries = poses.map(|pose| Carry::new(&pose.inverse()));
+        let (built, margins) = (&self.built, &self.margins);
+        let nothing = Motion { stays: true, ways: 0.0 };
+        self.last
+            .par_chunks_mut(points)
+            .zip(self.ahead.par_chunks_mut(points))
+            .zip(self.gone.par_chunks_mut(points))
+            .zip(self.reach.par_chunks_mut(points))
+            .zip(self.points.par_chunks_mut(points * LANES))
+            .enumerate()
+            .with_min_len(BLOCKS)
+            .map(|(block, ((((last, ahead), gone), reach), ends))| {
+                let (mut stays, mut sum) = (f32x8::of(1.0), f32x8::ZERO);
+                let [mut stepped, mut goes] = [f32x8::ZERO; 2];
+                for point in 0..points {
+                    let index = block * points + point;
+                    let (here, way) = (Vector::load(&start[index]), Vector::load(&coast[index]));
+                    for lane in 0..LANES {
+                        ends[point * LANES + lane] =
+                            Point { start: start[index].get(lane), coast: coast[index].get(lane) };
+                    }
+                    let [from, to] = [carries[0].point(here), carries[1].point(here + way)];
+                    let was = Vector::load(&built[index]);
+                    let far = (from - was).length().fast_max((to - was).length());
+                    let left = f32x8::new(margins[index].0) - far - f32x8::splat(bow);
+                    stays = left.choose(stays, f32x8::ZERO);
+                    let (step, on) = ((from - Vector::load(&last[point])).length(), (to - from).length());
+                    from.store(&mut last[point]);
+                    (to - from).store(&mut ahead[point]);
+                    sum += on;
+                    if let Some(segment) = point.checked_sub(1) {
+                        let more = f32x8::new(gone[segment].0) + step.fast_max(stepped);
+                        gone[segment] = Lanes(more.to_array());
+                        let end = more + on.fast_max(goes) * f32x8::splat(bent);
+                        reach[segment] = Lanes(end.to_array());
+                    }
+                    (stepped, goes) = (step, on);
+                }
+                let live = hair.model.live_lanes(block);
+                let stays = stays.to_array()[..live].iter().all(|stays| *stays > 0.0);
+                Motion { stays, ways: sum.to_array()[..live].iter().copied().map(f64::from).sum() }
+            })
+            .reduce(
+                || nothing,
+                |one, other| Motion { stays: one.stays && other.stays, ways: one.ways + other.ways },
+            )
+    }
+
+    fn fit(&mut self, places: usize) {
+        if self.built.len() != places {
+            *self = Self {
+                built: vec![Vec3Lanes::default(); places],
+                last: vec![Vec3Lanes::default(); places],
+                ahead: vec![Vec3Lanes::default(); places],
+                // No point is within.
+                margins: vec![Lanes([-1.0; LANES]); places],
+                gone: vec![Lanes::default(); places],
+                reach: vec![Lanes::default(); places],
+                points: vec![Point::default(); places * LANES],
+                across: vec![[Vec3::ZERO; 2]; places * LANES],
+                ..Self::default()
+            };
+        }
+    }
+
+    /// Finds the candidates of hair where it is at the start of a part, to be kept.
+    fn build(&mut self, hair: &Hair, bow: f32) {
+        self.begin_margins(bow);
+        let margins: &[f32] = cast_slice(&self.margins);
+        self.wider.clear();
+        // The last segment of a block has no margin of its own.
+        self.wider.extend(
+            (0..margins.len()).map(|end| margins[end].max(margins.get(end + LANES).copied().unwrap_or(0.0))),
+        );
+        self.find_met(hair, false);
+    }
+
+    /// Finds the candidates for a part alone.
+    fn search(&mut self, hair: &Hair, bow: f32, bent: f32) {
+        self.margins.fill(Lanes([-1.0; LANES]));
+        let [gone, reach]: [&[f32]; 2] = [cast_slice(&self.gone), cast_slice(&self.reach)];
+        self.wider.clear();
+        self.wider.extend(gone.iter().zip(reach).map(|(gone, reach)| bow + (bent - 1.0) * (reach - gone)));
+        self.find_met(hair, true);
+    }
+
+    /// Finds the segments that may come to touch, of those that are `wider`; if they are moving, on all of their way.
+    fn find_met(&mut self, hair: &Hair, moving: bool) {
+        let radius = |segment: u32| hair.model.radii[segment as usize / LANES].0[segment as usize % LANES];
+        let is_free = |segment: u32| {
+            let (index, lane) = (segment as usize / LANES, segment as usize % LANES);
+            [index, index + 1].iter().any(|at| hair.model.inverse_mass[*at].0[lane] > 0.0)
+        };
+        let (mut around, mut met) = (std::mem::take(&mut self.around), std::mem::take(&mut self.met));
+        self.find_boxes(hair, moving, &mut around, |segment| NEAR * radius(segment));
+        let mut directions = std::mem::take(&mut self.across);
+        across(&self.points, &mut directions);
+        let (points, wider) = (&self.points, &self.wider);
+        let judge = |[one, other]: [u32; 2]| {
+            let more = if moving { ROUNDING } else { wider[one as usize] + wider[other as usize] };
+            let touch = NEAR * (radius(one) + radius(other)) + more;
+            let meets = may_meet(points, &directions, [one, other], moving, touch);
+            (meets && (is_free(one) || is_free(other))).then_some(f32::NEG_INFINITY)
+        };
+        self.boxes.pairs(&around, judge, &mut met);
+        self.candidates.clear();
+        self.candidates
+            .extend(met.iter().map(|met| Candidate { segments: met.segments, until: met.distance }));
+        (self.around, self.met, self.across) = (around, met, directions);
+    }
+
+    /// Margins of hair that goes on as it does, from where it is.
+    fn begin_margins(&mut self, bow: f32) {
+        let Self { built, last, ahead, margins, gone, reach, .. } = self;
+        built.copy_from_slice(last);
+        for (margin, ahead) in margins.iter_mut().zip(ahead) {
+            let way = Vector::load(ahead).length() * f32x8::splat(LASTS);
+            *margin = Lanes((way + f32x8::splat(LEAST_MARGIN + bow)).to_array());
+        }
+        for (gone, reach) in gone.iter_mut().zip(reach) {
+            let ahead = f32x8::new(reach.0) - f32x8::new(gone.0);
+            (*gone, *reach) = (Lanes::default(), Lanes(ahead.to_array()));
+        }
+    }
+
+    /// Boxes about the segments of all strands in the frame of the head, and about their ways if they are moving, wider by
+    /// a radius \[m\] and what segments are wider on each side; those that are not finite have none.
+    fn find_boxes(&self, hair: &Hair, moving: bool, around: &mut Vec<Around>, radius: impl Fn(u32) -> f32) {
+        let points = hair.model.points_per_strand;
+        around.clear();
+        for block in 0..self.last.len() / points {
+            for point in 0..points - 1 {
+                for lane in 0..hair.model.live_lanes(block) {
+                    let segment = number(block, point, points, lane);
+                    let [a, b] = [0, 1].map(|end| {
+                        let index = block * points + point + end;
+                        let here = self.last[index].get(lane);
+                        let there = if moving { here + self.ahead[index].get(lane) } else { here };
+                        [here.min(there), here.max(there)]
+                    });
+                    let more = Vec3::splat(radius(segment) + self.wider[segment as usize]);
+                    let (low, high) = (a[0].min(b[0]) - more, a[1].max(b[1]) + more);
+                    if low.is_finite() && high.is_finite() {
+                        around.push(Around { low, high, segment, strand: (block * LANES + lane) as u32 });
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Length \[m\] of the longest segment.
+fn longest(hair: &Hair) -> f32 {
+    hair.lengths.stretch.iter().flat_map(|lanes| lanes.0).fold(0.0, f32::max)
+}
