@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 use strandline_base::math;
 use strandline_base::par::prelude::*;
-use strandline_body::{Mannequin, Random, Root, SignedDistance};
+use strandline_body::{Random, Root, SignedDistance};
 
 use super::comb::smooth;
 use super::lashes;
@@ -32,7 +32,7 @@ pub(super) fn strands(settings: &StyleSettings, skin: &Skin, first: usize, count
 
 /// One strand: along the skin as its style combs it, a little off it.
 fn strand(settings: &StyleSettings, skin: &Skin, index: usize) -> Strand {
-    let (root, thin) = root(settings, skin.mannequin(), index);
+    let (root, thin) = root(settings, skin, index);
     let mut random = Random::new(settings.seed, 12_000_000_000 + index as u64);
     let shorter = settings.length_variation * random.unit();
     let length = settings.length * (1.0 - shorter) * (0.5 + 0.5 * thin);
@@ -70,7 +70,7 @@ fn strand(settings: &StyleSettings, skin: &Skin, index: usize) -> Strand {
 }
 
 /// A root in the region of the style, and the thickness of the hair there, 0 to 1.
-fn root(settings: &StyleSettings, mannequin: &Mannequin, index: usize) -> (Root, f32) {
+fn root(settings: &StyleSettings, skin: &Skin, index: usize) -> (Root, f32) {
     let mut random = Random::new(settings.seed, 11_000_000_000 + index as u64);
     let mut found = (Root { position: JAW, normal: Vec3::Z, uv: Vec2::ZERO }, 0.0);
     for _ in 0..TRIALS {
@@ -90,8 +90,8 @@ fn root(settings: &StyleSettings, mannequin: &Mannequin, index: usize) -> (Root,
                 (JAW + 0.2 * out, -out)
             }
         };
-        let Some(position) = first_skin(mannequin, start, way) else { continue };
-        let (position, normal) = mannequin.nearest_skin(position);
+        let Some(position) = skin.first_along(start, way) else { continue };
+        let (position, normal) = skin.mannequin().nearest_skin(position);
         let thick = if settings.style == Style::Brows { 1.0 } else { bearded(position, normal) };
         let uv = Vec2::new(0.5 + 2.0 * position.x, 0.5 + 2.0 * position.y).clamp(Vec2::ZERO, Vec2::ONE);
         found = (Root { position, normal, uv }, thick);
@@ -100,22 +100,6 @@ fn root(settings: &StyleSettings, mannequin: &Mannequin, index: usize) -> (Root,
         }
     }
     found
-}
-
-/// The first place on the skin along a way \[m\].
-pub(super) fn first_skin(mannequin: &Mannequin, start: Vec3, way: Vec3) -> Option<Vec3> {
-    let mut passed = 0.0;
-    for _ in 0..48 {
-        let distance = mannequin.distance(start + way * passed);
-        if distance < 2e-4 {
-            return Some(start + way * passed);
-        }
-        passed += 0.8 * distance;
-        if passed > 0.25 {
-            break;
-        }
-    }
-    None
 }
 
 /// Density of a beard at a place of the face \[m\], 0 to 1.

@@ -5,7 +5,6 @@ use strandline_base::math;
 use strandline_body::{Random, Root};
 
 use super::StyleSettings;
-use super::face::first_skin;
 use super::skin::Skin;
 use super::strand::Strand;
 
@@ -83,7 +82,7 @@ fn root(skin: &Skin, place: &Place, aside: Vec2, random: &mut Random) -> (Root, 
     let up = margin.y + if place.lid == 0 { away } else { -away };
     let start = Vec3::new(place.side * margin.x, up, BEFORE) + aside.extend(0.0);
     let eye = mannequin.eye_center() * Vec3::new(place.side, 1.0, 1.0);
-    let (position, normal) = mannequin.nearest_skin(first_skin(mannequin, start, Vec3::NEG_Z).unwrap_or(eye));
+    let (position, normal) = mannequin.nearest_skin(skin.first_along(start, Vec3::NEG_Z).unwrap_or(eye));
     let from_eye = position - eye;
     let pitch = math::atan2(from_eye.y, from_eye.z);
     let uv = Vec2::new(0.5 + 2.0 * position.x, 0.5 + 2.0 * position.y).clamp(Vec2::ZERO, Vec2::ONE);

@@ -64,6 +64,22 @@ impl Skin {
         (point, above)
     }
 
+    /// The first place on the skin along a way \[m\].
+    pub fn first_along(&self, start: Vec3, way: Vec3) -> Option<Vec3> {
+        let mut passed = 0.0;
+        for _ in 0..48 {
+            let distance = self.mannequin.distance(start + way * passed);
+            if distance < 2e-4 {
+                return Some(start + way * passed);
+            }
+            passed += 0.8 * distance;
+            if passed > 0.25 {
+                break;
+            }
+        }
+        None
+    }
+
     /// True for most places \[m\] that are far from the skin: found without its distance there.
     fn is_far(&self, point: Vec3) -> bool {
         let at = (point.with_x(point.x.abs()) - self.low) / CELL;

@@ -152,3 +152,31 @@ impl FromStr for Scene {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        body::{Build, SignedDistance},
+        groom::Style,
+    };
+
+    #[test]
+    fn hair_grows_on_the_build_of_its_body() {
+        let mut scene = Scene::demo();
+        scene.set_style(Style::Beard);
+        scene.style.strand_count = 200;
+        let mut off = Build::ALL.map(|build| {
+            scene.body.build = build;
+            let groom = scene.grow(200).unwrap();
+            let skin = Mannequin::of(build, scene.body.eyes);
+            let other = Mannequin::of(Build::Broad, scene.body.eyes);
+            let most =
+                |skin: &Mannequin| groom.roots().map(|root| skin.distance(root).abs()).fold(0.0, f32::max);
+            assert!(most(&skin) < 2e-5, "{build:?}: {} m", most(&skin));
+            most(&other)
+        });
+        off.sort_by(f32::total_cmp);
+        assert!(off[2] > 1e-3, "builds differ: {off:?} m");
+    }
+}

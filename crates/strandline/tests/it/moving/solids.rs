@@ -1,4 +1,4 @@
-//! What hair hits of a body that moves, and a body that moves and is not drawn.
+//! Solids of a body that moves, and a body that moves and is not drawn.
 
 use glam::Vec3;
 use strandline::{
