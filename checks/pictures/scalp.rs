@@ -98,7 +98,7 @@ fn bare(head: &mut Head, mannequin: &Mannequin, camera: &Camera) -> (f32, f32) {
     let covered = channel(&layers, "mask.hair");
     let scalp = mannequin.scalp();
     // Hair that is combed back or from the whorl has no parting.
-    let parted = PARTED.contains(&head.scene.style.style);
+    let parted = head.scene.style.style.is_parted();
     let (mut haired, mut open) = (0.0, 0.0);
     let mut shown = Linear::of(&layers);
     for (pixel, share) in covered.iter().enumerate() {
@@ -128,10 +128,6 @@ fn bare(head: &mut Head, mannequin: &Mannequin, camera: &Camera) -> (f32, f32) {
     );
     (haired, open)
 }
-
-/// Styles with a parting.
-const PARTED: [Style; 6] =
-    [Style::Bob, Style::Long, Style::Wavy, Style::Curly, Style::SideSwept, Style::Coils];
 
 /// Styles whose hair covers the head.
 fn full(style: &Style) -> bool {

@@ -21,6 +21,13 @@ pub fn groom(options: &GroomOptions) -> anyhow::Result<()> {
             "strandline groom takes keys of `style`, `body.build`, `body.eyes` and `groom.points_per_strand`";
         return Err(Usage(format!("--set {other}: {mend}")).into());
     }
+    if options.guides.is_none()
+        && options.values.iter().any(|value| value.starts_with("groom.points_per_strand"))
+    {
+        let mend =
+            "--guides writes hair as a scene draws it; without it strands have the points of their style";
+        return Err(Usage(format!("--set groom.points_per_strand needs --guides: {mend}")).into());
+    }
     Set { values: options.values.clone() }.apply(&mut scene)?;
     let waiting = Waiting::begin("growing strands");
     let mut groom = scene.grow(options.strands as usize)?;

@@ -55,7 +55,7 @@ choices! {
 
 impl Style {
     /// True if hair falls to both sides of a parting.
-    pub(crate) fn is_parted(self) -> bool {
+    pub fn is_parted(self) -> bool {
         match self {
             Self::Bob | Self::Long | Self::Wavy | Self::Curly | Self::SideSwept | Self::Coils => true,
             Self::Pixie | Self::Buzz | Self::Afro | Self::Ponytail | Self::Bun | Self::Braid => false,

@@ -1,6 +1,6 @@
 //! Time of a step of strands that push each other, beside that of the same step without, and what the step meets.
 //!
-//! `cargo run --release -p strandline-sim --example contact_step -- [bob, long or another style] [steps] [points] [strands]`
+//! `cargo run --release -p strandline-sim --example contact_step -- [bob, long or wavy] [steps] [points] [strands]`
 
 #![allow(clippy::disallowed_methods, clippy::print_stdout)] // it prints times, and nothing depends on its bits
 

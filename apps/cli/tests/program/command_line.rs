@@ -135,6 +135,7 @@ fn grooms_are_grown_converted_and_described() {
     let wrong = |set: &str| ["groom", "--style", "bob", "--set", set, "--out", "no.hair"].map(str::to_owned);
     for (set, words) in [
         ("style.length=9", ["style.length", "2"]),
+        ("groom.points_per_strand=8", ["groom.points_per_strand", "--guides"]),
         ("look.grey=1", ["--set look.grey=1", "keys of `style`"]),
         ("style.seed=3", ["--set style.seed=3", "keys of `style`"]),
     ] {

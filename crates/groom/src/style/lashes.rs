@@ -10,12 +10,14 @@ use super::strand::Strand;
 
 /// Lashes of an upper and of a lower lid.
 const COUNTS: [usize; 2] = [120, 75];
+/// Places in the rows from one lash to the next; it shares no factor with the number of lashes of an eye.
+const STRIDE: usize = 73;
 /// Ends of the rows, as shares of the way from the middle of an eye to its outer corner.
 const ROWS: [[f32; 2]; 2] = [[-0.80, 0.94], [-0.62, 0.92]];
 /// Distance \[m\] of the rows from the margin, and how wide they are.
 const OFF_MARGIN: f32 = 0.0003;
 const ROW_WIDTH: f32 = 0.0009;
-/// Length of lashes of the lower lid over that of the upper one's.
+/// Length of the lower lid's lashes over that of the upper lid's.
 const LOWER: f32 = 0.65;
 /// Pitch \[rad\] of a lash at its root and at its tip over that of its lid, for either lid: they bend apart.
 const PITCH: [[f32; 2]; 2] = [[-0.35, 0.85], [0.05, -0.75]];
@@ -23,7 +25,7 @@ const PITCH: [[f32; 2]; 2] = [[-0.35, 0.85], [0.05, -0.75]];
 const FAN: f32 = 0.75;
 /// Radius \[m\] of a lash: the strands that stand for one lie in it.
 const RADIUS: f32 = 5e-5;
-/// Height \[m\] above the skin from which lashes are looked for.
+/// Place \[m\] before the face, along z, from which roots are looked for.
 const BEFORE: f32 = 0.16;
 
 /// A lash: its eye, its lid, and its place in the row, from -1 to 1.
@@ -67,7 +69,8 @@ pub(super) fn strand(settings: &StyleSettings, skin: &Skin, index: usize) -> Str
 /// The place of a lash: rows are filled evenly, a little out of order.
 fn place(lash: usize, random: &mut Random) -> Place {
     let side = if lash.is_multiple_of(2) { 1.0 } else { -1.0 };
-    let of_eye = lash / 2;
+    // The first few reach from end to end of both lids.
+    let of_eye = lash / 2 * STRIDE % (COUNTS[0] + COUNTS[1]);
     let (lid, index) = if of_eye < COUNTS[0] { (0, of_eye) } else { (1, of_eye - COUNTS[0]) };
     let share = (index as f32 + 0.5 + 0.45 * random.signed()) / COUNTS[lid] as f32;
     let [inner, outer] = ROWS[lid];

@@ -124,6 +124,19 @@ fn lashes_bend_away_from_the_eye_and_move_with_the_lids() {
         sum / 390.0
     });
     assert!(means[1] < means[0] - 0.002, "closed lids are lower: {means:?}");
+    // Few lashes stand on all of both lids.
+    let few = StyleSettings { strand_count: 48, ..settings }.grow().unwrap();
+    for side in [-1.0, 1.0] {
+        for is_upper in [false, true] {
+            let of_lid = (0..48)
+                .map(|strand| few.strand(strand))
+                .filter(|points| side * points[0].x > 0.0 && (points[6].y > points[5].y) == is_upper);
+            let places: Vec<f32> = of_lid.map(|points| points[0].x.abs()).collect();
+            let (least, most) =
+                places.iter().fold((1.0_f32, 0.0_f32), |(low, high), x| (low.min(*x), high.max(*x)));
+            assert!(most - least > 0.014, "{side} {is_upper}: from {least} to {most} m of 2.8 cm");
+        }
+    }
 }
 
 #[test]

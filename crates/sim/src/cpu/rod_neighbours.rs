@@ -17,9 +17,11 @@ use crate::wisps::pair::{Near, Pair};
 use crate::wisps::place::NEAR;
 use crate::wisps::radii::number;
 
-/// Ways of a point in a part that its margin lasts, and the least margin \[m\].
+/// Parts of a step for which a margin lasts while a point goes on as it does, the least margin \[m\], and the most for more
+/// than one part: boxes that are much wider than others are cut.
 const LASTS: f32 = 4.0;
 const LEAST_MARGIN: f32 = 3e-4;
+const MOST_MARGIN: f32 = 6e-3;
 /// Mean way of points in a part \[m\] beyond which no list is kept.
 const CALM: f32 = 2e-4;
 /// Distance \[m\] that is rounding.
@@ -44,6 +46,9 @@ pub(super) struct Neighbours {
     around: Vec<Around>,
     met: Vec<Met>,
     candidates: Vec<Candidate>,
+    /// Radii \[m\] of the list.
+    radii: Vec<Lanes>,
+    motions: Vec<Motion>,
     /// Places of points \[m\] when the list was made and in the part before, and their ways in the part, in the frame of the
     /// head, shape `[block][point]` of lanes.
     built: Vec<Vec3Lanes>,
@@ -90,10 +95,11 @@ impl Neighbours {
         let Motion { stays, ways } = self.follow(hair, motion, poses, (bow, bent));
         if !stays {
             let points = hair.model.strand_count * hair.model.points_per_strand;
-            if ways > f64::from(CALM) * points as f64 {
-                self.search(hair, bow, bent);
-            } else {
+            // Ways that are no numbers are not calm.
+            if ways <= f64::from(CALM) * points as f64 {
                 self.build(hair, bow);
+            } else {
+                self.search(hair, bow, bent);
             }
         }
         let look = Look::new(hair, &self.points, pairs);
@@ -127,10 +133,10 @@ impl Neighbours {
         (bow, bent): (f32, f32),
     ) -> Motion {
         let points = hair.model.points_per_strand;
-        self.fit(start.len());
+        self.fit(start.len(), &hair.model.radii);
+        let mut motions = std::mem::take(&mut self.motions);
         let carries = poses.map(|pose| Carry::new(&pose.inverse()));
         let (built, margins) = (&self.built, &self.margins);
-        let nothing = Motion { stays: true, ways: 0.0 };
         self.last
             .par_chunks_mut(points)
             .zip(self.ahead.par_chunks_mut(points))
@@ -152,9 +158,10 @@ impl Neighbours {
                     let [from, to] = [carries[0].point(here), carries[1].point(here + way)];
                     let was = Vector::load(&built[index]);
                     let far = (from - was).length().fast_max((to - was).length());
-                    let left = f32x8::new(margins[index].0) - far - f32x8::splat(bow);
-                    stays = left.choose(stays, f32x8::ZERO);
                     let (step, on) = ((from - Vector::load(&last[point])).length(), (to - from).length());
+                    let aside = f32x8::splat(bow) + on * f32x8::splat(bent - 1.0);
+                    let left = f32x8::new(margins[index].0) - far - aside;
+                    stays = left.choose(stays, f32x8::ZERO);
                     from.store(&mut last[point]);
                     (to - from).store(&mut ahead[point]);
                     sum += on;
@@ -170,13 +177,18 @@ impl Neighbours {
                 let stays = stays.to_array()[..live].iter().all(|stays| *stays > 0.0);
                 Motion { stays, ways: sum.to_array()[..live].iter().copied().map(f64::from).sum() }
             })
-            .reduce(
-                || nothing,
-                |one, other| Motion { stays: one.stays && other.stays, ways: one.ways + other.ways },
-            )
+            .collect_into_vec(&mut motions);
+        // In one order, whatever the threads.
+        let nothing = Motion { stays: true, ways: 0.0 };
+        let all = motions.iter().fold(nothing, |one, other| Motion {
+            stays: one.stays && other.stays,
+            ways: one.ways + other.ways,
+        });
+        self.motions = motions;
+        all
     }
 
-    fn fit(&mut self, places: usize) {
+    fn fit(&mut self, places: usize, radii: &[Lanes]) {
         if self.built.len() != places {
             *self = Self {
                 built: vec![Vec3Lanes::default(); places],
@@ -190,6 +202,10 @@ impl Neighbours {
                 across: vec![[Vec3::ZERO; 2]; places * LANES],
                 ..Self::default()
             };
+        }
+        if self.radii != radii {
+            self.radii = radii.to_vec();
+            self.margins.fill(Lanes([-1.0; LANES]));
         }
     }
 
@@ -244,8 +260,10 @@ impl Neighbours {
         let Self { built, last, ahead, margins, gone, reach, .. } = self;
         built.copy_from_slice(last);
         for (margin, ahead) in margins.iter_mut().zip(ahead) {
-            let way = Vector::load(ahead).length() * f32x8::splat(LASTS);
-            *margin = Lanes((way + f32x8::splat(LEAST_MARGIN + bow)).to_array());
+            let way = Vector::load(ahead).length();
+            let lasts = way * f32x8::splat(LASTS);
+            let kept = lasts.fast_min(way.fast_max(f32x8::splat(MOST_MARGIN)));
+            *margin = Lanes((kept + f32x8::splat(LEAST_MARGIN + bow)).to_array());
         }
         for (gone, reach) in gone.iter_mut().zip(reach) {
             let ahead = f32x8::new(reach.0) - f32x8::new(gone.0);

@@ -141,6 +141,15 @@ impl Boxes {
             }
         }
         found[first..].sort_unstable_by_key(|met| met.segments);
+        // Two cells of a box may have one bucket.
+        let mut kept = first;
+        for index in first..found.len() {
+            if kept == first || found[kept - 1].segments != found[index].segments {
+                found[kept] = found[index];
+                kept += 1;
+            }
+        }
+        found.truncate(kept);
     }
 }
 
@@ -215,6 +224,25 @@ mod tests {
             assert!(expected.len() > 100);
             assert_eq!(found.iter().map(|met| met.segments).collect::<Vec<_>>(), expected);
         }
+        // Few boxes have few buckets, and several cells of one box the same.
+        for count in 2..9 {
+            for seed in 0..40 {
+                let mut random = Random::new(seed, count);
+                let mut vector = |size: f32| Vec3::new(random.unit(), random.unit(), random.unit()) * size;
+                let few: Vec<Around> = (0..count as u32)
+                    .map(|segment| {
+                        let low = vector(0.5);
+                        Around { low, high: low + 0.3 + vector(0.8), segment, strand: segment }
+                    })
+                    .collect();
+                let meets = |one: &Around, other: &Around| one.segment < other.segment && one.meets(other);
+                let expected: usize =
+                    few.iter().map(|one| few.iter().filter(|other| meets(one, other)).count()).sum();
+                room.pairs(&few, |_| Some(0.0), &mut found);
+                assert_eq!(found.len(), expected, "{count} boxes, seed {seed}");
+            }
+        }
+        room.pairs(&boxes, |_| Some(0.0), &mut found);
         let odd = |segments: [u32; 2]| (segments[0] % 2 == 1).then_some(3.0);
         room.pairs(&boxes, odd, &mut found);
         expected.retain(|segments| segments[0] % 2 == 1);

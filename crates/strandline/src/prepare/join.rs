@@ -113,6 +113,9 @@ pub(super) fn add_grooms(
         let apart = mesh.and_then(|mesh| guess::apart(&further, mesh));
         notes.extend(apart.map(|said| format!("{}: {said}", part.file.display())));
         let next = groom.groups.iter().flatten().max().map_or(0, |group| group.saturating_add(1));
+        if part.name.is_some() {
+            leave_numbers(&mut further);
+        }
         name_groups(&mut further, next, part.name.clone().unwrap_or_else(|| stem(Some(&part.file))));
         let strands = (groom.strand_count() + further.strand_count()) as u64;
         let points = (groom.points.len() + further.points.len()) as u64;
@@ -142,6 +145,13 @@ pub(super) fn add_grooms(
 fn stem(file: Option<&Path>) -> String {
     let stem = file.and_then(Path::file_stem);
     stem.map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// Leaves out groups that have numbers alone, as the locks of a style have.
+fn leave_numbers(groom: &mut Groom) {
+    if groom.group_names.is_empty() {
+        groom.groups = None;
+    }
 }
 
 /// Makes a groom without groups one of a name and number; numbers of other groups count from there.
@@ -211,6 +221,13 @@ mod tests {
         let mut brows = groom(2);
         name_groups(&mut brows, 8, "brows".to_owned());
         assert_eq!((brows.groups.as_deref(), &*brows.group_names[&8]), (Some(&[8, 8][..]), "brows"));
+        // Locks of a style take the name that a scene gives the file; groups with names keep theirs.
+        let mut locks = groom(2);
+        locks.groups = Some(vec![0, 1]);
+        [&mut locks, &mut hair].into_iter().for_each(leave_numbers);
+        name_groups(&mut locks, 8, "fringe".to_owned());
+        assert_eq!((locks.groups.as_deref(), &*locks.group_names[&8]), (Some(&[8, 8][..]), "fringe"));
+        assert_eq!(hair.groups.as_deref(), Some(&[3, 7][..]));
     }
 
     #[test]

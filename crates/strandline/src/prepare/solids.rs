@@ -148,7 +148,8 @@ fn solid_skin<'a>(mesh: &'a Mesh, starts: &[Option<usize>], parts: &[Cover]) -> 
         !open.iter().any(|range| corners.iter().any(|&index| range.contains(&(index as usize))))
     };
     let triangles = mesh.triangles.iter().filter(is_solid).copied().collect();
-    Cow::Owned(Mesh { triangles, ..mesh.clone() })
+    // Materials have one entry for each triangle.
+    Cow::Owned(Mesh { triangles, materials: None, ..mesh.clone() })
 }
 
 /// A note on solid parts that are not drawn: a moving skin is the drawn one.

@@ -49,7 +49,7 @@ impl Scene {
         self.style = StyleSettings { seed, strand_count, ..StyleSettings::new(style) };
         self.groom.points_per_strand = style.points_per_strand();
         self.level_of_detail.segments_per_span = segments_per_span(self.groom.points_per_strand);
-        // Hairs of a face are fewer than those of a head, and lashes half as thick again; other numbers are the user's.
+        // Hairs of a face are fewer than those of a head, and 390 lashes as thick as 550 hairs; other numbers are the user's.
         let hairs = |style| match style {
             Style::Beard => 25_000,
             Style::Brows => 1_500,
@@ -156,10 +156,7 @@ impl FromStr for Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        body::{Build, SignedDistance},
-        groom::Style,
-    };
+    use crate::body::{Build, SignedDistance};
 
     #[test]
     fn hair_grows_on_the_build_of_its_body() {

@@ -11,8 +11,8 @@ settings! {
     pub struct GroomPart {
         /// A file as `groom.file`.
         file: PathBuf = PathBuf::new(), required true;
-        /// Name of the group that its strands are, where the file has no groups of its own; without one that of
-        /// the file.
+        /// Name of the group that its strands are, where the file has no named groups of its own; without one that
+        /// of the file.
         name: Option<String> = None;
         /// Metres per unit of the file; "auto" takes that of `groom.file`, or what brings the roots to the body.
         scale: Scale = Scale::default(), in [1e-6, 1e6] "m";

@@ -25,6 +25,16 @@ fn hair_hits_the_solid_parts_of_a_body_that_moves_alone() {
     assert_eq!(hit(&Prepared::new(&both).unwrap()), alone, "solid = false");
     both.body.parts = vec![BodyPart { solid: Some(true), ..beside.clone() }];
     assert_eq!(hit(&Prepared::new(&both).unwrap()), 2 * alone);
+    // An open part with a colour of its own.
+    let folder = tempfile::tempdir().unwrap();
+    let cloth = folder.path().join("cloth.obj");
+    std::fs::write(folder.path().join("red.mtl"), "newmtl red\nKd 1 0 0\n").unwrap();
+    let text = "mtllib red.mtl\nusemtl red\nv .3 0 0\nv .4 0 0\nv .4 .1 0\nv .3 .1 0\nf 1 2 3 4\n";
+    std::fs::write(&cloth, text).unwrap();
+    both.body.parts = vec![BodyPart { file: cloth, ..BodyPart::default() }];
+    let prepared = Prepared::new(&both).unwrap();
+    assert!(prepared.mesh.as_ref().unwrap().materials.is_some(), "the cloth has a colour");
+    assert_eq!(hit(&prepared), alone);
     both.body.parts = vec![BodyPart { solid: Some(true), visible: false, clip: None, ..beside }];
     let prepared = Prepared::new(&both).unwrap();
     assert_eq!(hit(&prepared), alone);
@@ -33,7 +43,7 @@ fn hair_hits_the_solid_parts_of_a_body_that_moves_alone() {
 }
 
 #[test]
-fn a_collider_in_place_of_a_skin_that_moves_is_told() {
+fn a_collider_in_place_of_a_moving_skin_gets_a_note() {
     let mut still = scene("nod");
     still.body.collider_file = Some(bust());
     let notes = Prepared::new(&still).unwrap().notes.join("\n");
