@@ -88,8 +88,8 @@ pub struct Scene {
     camera: Camera,
     pub look: Look,
     pub body_look: BodyLook,
-    lights: Vec<Light>,
-    settings: PictureSettings,
+    pub lights: Vec<Light>,
+    pub settings: PictureSettings,
 }
 
 impl Scene {
@@ -272,7 +272,12 @@ law! {
 
 /// A square light \[m\] of a radiance that faces the head.
 fn panel(position: [f32; 3], side: f32, radiance: [f32; 3]) -> Light {
-    let (position, target) = (Vec3::from(position), Vec3::new(0.0, -0.07, 0.0));
+    square(position, Vec3::new(0.0, -0.07, 0.0), side, radiance)
+}
+
+/// A square light \[m\] of a radiance that faces a place \[m\].
+pub fn square(position: [f32; 3], target: Vec3, side: f32, radiance: [f32; 3]) -> Light {
+    let position = Vec3::from(position);
     // Radiance of a white surface at the target.
     let scale = side * side / (std::f32::consts::PI * position.distance_squared(target));
     Light {

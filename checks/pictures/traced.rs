@@ -3,10 +3,10 @@
 
 use glam::Vec3;
 use strandline_checks::law;
-use strandline_render::Light;
 use strandline_render::fibre::Chiang;
+use strandline_render::{Background, Environment, Light};
 
-use crate::light::{Scene, sphere, sun};
+use crate::light::{Scene, sphere, square, sun};
 use crate::linear::{Linear, folder};
 
 /// Bands of rows of a picture.
@@ -15,14 +15,14 @@ const BANDS: usize = 16;
 const DIM: f32 = 0.2;
 
 /// Lights, the directions in which they go, and the greatest share by which a channel of the whole may differ, and of a
-/// band. Upright hair that is lit along itself is dark deep inside, and light from below that the camera's side throws
-/// back is too bright there. With the inclinations of the 26 directions alone white hair from behind was 0.22 off, hair
+/// band. Light from below that the camera's side throws back is too bright. Hair that showed no more of straight light
+/// than meets it was 0.15 too dark from above, and 0.2 too bright from below. With the inclinations of the 26 directions alone white hair from behind was 0.22 off, hair
 /// of any pigment but black from aside 0.28, and bands of it up to 0.96.
 const LIGHTS: [(&str, [f32; 3], [f32; 2]); 4] = [
     ("behind", [-0.3, -0.5, 0.8], [0.1, 0.45]),
     ("side", [-1.0, -0.15, -0.1], [0.1, 0.42]),
-    ("above", [0.1, -1.0, -0.05], [0.17, 0.3]),
-    ("below", [0.25, 0.6, -0.75], [0.22, 0.58]),
+    ("above", [0.1, -1.0, -0.05], [0.1, 0.42]),
+    ("below", [0.25, 0.6, -0.75], [0.18, 0.58]),
 ];
 /// Hair, with its eumelanin and pheomelanin.
 const PIGMENTS: [(&str, [f32; 2]); 4] =
@@ -71,6 +71,34 @@ law! {
                 let [whole, band] = apart(&found, &reference(light, pigment));
                 assert!(whole <= most[0] && band <= most[1], "{light} {pigment}: {whole} {band}");
             }
+        }
+    }
+}
+
+/// Light hair of the ball in two more lights, and the greatest share by which a channel of the whole may differ, and of a
+/// band: a soft box in even surroundings (0.02, 0.07 were seen), and a low sun from behind that goes up through the tips, too bright as
+/// light from below is (0.21, 0.60).
+fn more() -> [(&'static str, &'static str, Scene, [f32; 2]); 2] {
+    let mut blonde = scene([0.0, -1.0, 0.0], PIGMENTS[1].1);
+    let around = Vec3::new(0.1, 0.12, 0.15);
+    blonde.look.environment = Environment { sky: around, ground: around };
+    blonde.settings.background = Background { top: around, bottom: around };
+    blonde.lights = vec![square([-1.2, 0.3, 0.9], Vec3::ZERO, 0.8, [12.0; 3])];
+    let white = scene([-0.75, 0.35, -0.5], PIGMENTS[0].1);
+    [("panel", "blonde", blonde, [0.04, 0.15]), ("low", "white", white, [0.24, 0.65])]
+}
+
+#[test]
+fn light_hair_in_two_more_lights_is_as_bright_as_path_tracing_shows_it() {
+    for (light, pigment, mut scene, most) in more() {
+        let expected = reference(light, pigment);
+        let [whole, band] = apart(&bands(&scene.drawn()), &expected);
+        assert!(whole <= most[0] && band <= most[1], "{light} {pigment}: {whole} {band}");
+        if light == "panel" {
+            // Light that is scattered no more than twice leaves it dark.
+            scene.look.fibre.chiang.scatterings = 1;
+            let [whole, _] = apart(&bands(&scene.drawn()), &expected);
+            assert!(whole > most[0], "{light} {pigment}: {whole}");
         }
     }
 }

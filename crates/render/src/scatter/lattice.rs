@@ -167,16 +167,20 @@ impl Lattice {
     /// Views of hair of unit tangent `t` along every direction.
     pub fn shows(&self, t: Vec3) -> [Shows; DIRECTIONS] {
         self.ways.map(|(way, share)| {
-            let sine = t.dot(way);
-            let weight = 4.0 * std::f32::consts::PI * share * flat(sine);
-            let seen = self.ends[0].seen.at(sine);
-            Shows { u: light_field::across(t, way), seen, weight }
+            let seen = self.ends[0].seen.at(t.dot(way));
+            Shows { u: light_field::across(t, way), seen, weight: 4.0 * std::f32::consts::PI * share }
         })
     }
 
     /// Adds what a mixture of hair of unit tangent `t` shows along every direction of light of the given radiance (of a
-    /// white surface that faces it) from a unit direction; what is shown all around is what meets the hair. The last
-    /// lanes hold its first moments: see [`inclination`](super::inclination).
+    /// white surface that faces it) from a unit direction; the last lanes hold its first moments: see
+    /// [`inclination`](super::inclination).
+    ///
+    /// The mean radiance over the sphere is nearly the fibre's, also for light along the hair, of which little meets the
+    /// hair: terms along the fibre [d'Eon2011] are the same if eye and light change places, and their sum over all eyes
+    /// is that over all lights. Shares of the paths are those of the light's inclination instead of each eye's: too
+    /// bright by 0.07, 0.20 and 0.32 at 56, 71 and 78 degrees. As much light as meets the hair is 0.04 too bright at 12 degrees, and
+    /// 0.15 and 0.27 too dark at 71 and 78.
     pub fn add_light(
         &self,
         t: Vec3,
@@ -208,7 +212,7 @@ impl Lattice {
             path
         });
         let shares = self.table.shares(&end.seen.at(arriving.sine));
-        let light = light * (std::f32::consts::PI * flat(arriving.sine));
+        let light = light * std::f32::consts::PI;
         let scales: [Vec3; 3] =
             std::array::from_fn(|path| light * shares[path] / sums[path].max(Vec3::splat(1e-20)));
         for ((shown, shows), paths) in shown.iter_mut().zip(shows).zip(paths) {
@@ -295,16 +299,17 @@ impl Arriving {
     }
 }
 
-/// The cosine of a sine.
-#[inline]
-fn flat(sine: f32) -> f32 {
-    (1.0 - sine * sine).max(0.0).sqrt()
-}
-
 #[cfg(test)]
 mod tests {
+    use strandline_base::math;
+
     use super::*;
     use crate::fibre::Chiang;
+
+    /// The cosine of a sine.
+    fn flat(sine: f32) -> f32 {
+        (1.0 - sine * sine).max(0.0).sqrt()
+    }
 
     #[test]
     fn even_light_stays_even_about_white_hair() {
@@ -321,17 +326,30 @@ mod tests {
     }
 
     #[test]
-    fn what_meets_white_hair_is_shown_all_around() {
-        let lattice = Lattice::new(&Chiang::default().lobes(), [0.0; 3], None);
-        let (t, to_light) = (Vec3::new(0.2, 0.9, 0.1).normalize(), Vec3::new(0.4, 0.7, 0.6).normalize());
-        let mut shown = Rays::default();
-        lattice.add_light(t, &lattice.shows(t), &ALL_DARK, (to_light, Vec3::ONE), &mut shown);
-        let leaves = |(shown, (way, share)): (&Vec4, &(Vec3, f32))| {
-            shown.x * 4.0 * share * (1.0 - t.dot(*way).powi(2)).sqrt()
-        };
-        let sum: f32 = shown.iter().zip(lattice.ways()).map(leaves).sum();
-        let meets = (1.0 - t.dot(to_light).powi(2)).sqrt();
-        assert!((sum / meets - 1.0).abs() < 1e-3, "{sum} {meets}");
+    fn straight_light_is_shown_as_brightly_as_a_fibre_shows_it() {
+        let lobes = Chiang::default().lobes();
+        let lattice = Lattice::new(&lobes, [0.0; 3], None);
+        let fibre = Table::new(&lobes, [0.0; 3]);
+        let t = Vec3::new(0.2, 0.9, 0.1).normalize();
+        // At 12 and at 56 degrees from across the hair.
+        for (to_light, most) in [(Vec3::X, 0.02), (Vec3::new(0.4, 0.7, 0.6), 0.08)] {
+            let to_light = to_light.normalize();
+            let mut shown = Rays::default();
+            lattice.add_light(t, &lattice.shows(t), &ALL_DARK, (to_light, Vec3::ONE), &mut shown);
+            let mean: f32 = shown.iter().zip(lattice.ways()).map(|(shown, (_, share))| shown.x * share).sum();
+            let (mut expected, count) = (0.0, 20_000);
+            for eye in 0..count {
+                let height = 1.0 - (2 * eye + 1) as f32 / count as f32;
+                let (sine, cosine) = math::sin_cos(f64::from(eye) * 2.399_963_2);
+                let eye = Vec3::new(flat(height) * cosine as f32, height, flat(height) * sine as f32);
+                let (from, u) = (t.dot(to_light), light_field::across(t, eye));
+                let turn = u.dot(to_light) / flat(from);
+                expected += fibre.scatter(t.dot(eye), from, turn, Pigments::Even(1.0), 0.0).x;
+            }
+            expected *= std::f32::consts::PI / count as f32;
+            // As much light as meets the hair is 0.04 more at 12 degrees.
+            assert!((mean / expected - 1.0).abs() < most, "{to_light}: {mean} {expected}");
+        }
     }
 
     /// Shares of the sine of inclination, and of its second order, that light keeps where white hair scatters it along
