@@ -68,8 +68,10 @@ fn apart(found: Vec3, expected: Vec3) -> f32 {
 
 law! {
     fn hair_of_each_place_scatters_its_own_colour(on) {
-        // So far apart that they hardly light each other.
-        let places = [Vec3::ZERO, Vec3::X * 0.25, Vec3::X * 0.5];
+        // Far apart, and along no direction in which light is carried, they light each other by 0.01. Along x, where
+        // light is carried without getting weaker, the dark hair is 0.09 brighter.
+        let way = Vec3::new(0.25, 0.0, 0.1);
+        let places = [Vec3::ZERO, way, 2.0 * way];
         let colors = [Vec3::new(0.11, 0.1, 0.09), Vec3::new(0.71, 0.45, 0.24), Vec3::new(0.95, 0.92, 0.89)];
         let strands = drawn(on, tufts(&places, |tuft, _| colors[tuft]), |_| ()).strands(on);
         for (tuft, color) in colors.into_iter().enumerate() {
@@ -78,7 +80,7 @@ law! {
             let (found, expected) = (mean(&strands, of_tuft), mean(&alone, of_tuft));
             // A colour between the others is a mixture of them, that gives back as much light but more of it forward:
             // blue is 1.15 times too bright there.
-            let most = if tuft == 1 { 0.2 } else { 0.08 };
+            let most = if tuft == 1 { 0.2 } else { 0.03 };
             assert!(apart(found, expected) < most, "{color}: {found}, expected {expected}");
         }
     }

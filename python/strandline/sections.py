@@ -1090,7 +1090,8 @@ class LookShadow(TypedDict, total=False):
 
     map_size: int
     """Texels along each side of a light's maps; on a GPU at most 2,048 with two shadow lights, 1,024 with eight.
-    Allowed: 16 to 4096."""
+    Blonde and white hair on a head is up to 0.2 darker than path tracing shows it with 512, 0.1 with 1,024, and as
+    bright with 2,048. Allowed: 16 to 4096."""
 
     layers: Sequence[float]
     """Distances behind the first hair at which the three layers end, rising; hair farther behind it casts no shadow.
