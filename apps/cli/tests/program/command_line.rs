@@ -127,21 +127,6 @@ fn grooms_are_grown_converted_and_described() {
     let at = folder.path();
     works(at, &["groom", "--style", "curly", "--strands", "30", "--seed", "4", "--out", "a.hair"]);
     works(at, &["groom", "--style", "bob", "--strands", "60", "--guides", "12", "--out", "own.npz"]);
-    let short =
-        ["groom", "--style", "bob", "--strands", "60", "--set", "style.length=0.05", "--out", "short.hair"];
-    works(at, &short);
-    let said = works(at, &["info", "short.hair"]);
-    assert!(said.contains("0.05"), "{said}");
-    let wrong = |set: &str| ["groom", "--style", "bob", "--set", set, "--out", "no.hair"].map(str::to_owned);
-    for (set, words) in [
-        ("style.length=9", ["style.length", "2"]),
-        ("groom.points_per_strand=8", ["groom.points_per_strand", "--guides"]),
-        ("look.grey=1", ["--set look.grey=1", "keys of `style`"]),
-        ("style.seed=3", ["--set style.seed=3", "keys of `style`"]),
-    ] {
-        let wrong = wrong(set);
-        fails(at, &wrong.each_ref().map(String::as_str), 2, &words);
-    }
     let own =
         strandline::format::load(&at.join("own.npz"), &strandline::format::LoadOptions::default()).unwrap();
     let marks = own.groom.guide_flags.unwrap();

@@ -46,3 +46,29 @@ fn mistakes_are_told_with_the_nearest_key_and_the_range() {
         }
     }
 }
+
+#[test]
+fn a_groom_is_grown_with_settings_of_its_style_and_head() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let grown = |set: &[&str]| {
+        let all = [&["groom", "--style", "bob", "--strands", "60", "--out", "bob.hair"][..], set].concat();
+        let output = strandline(at, &all);
+        assert!(output.status.success(), "{all:?}: {}", String::from_utf8_lossy(&output.stderr));
+        let lengths = strandline::Groom::load(&at.join("bob.hair")).unwrap().lengths();
+        lengths.iter().sum::<f32>() / 60.0
+    };
+    let (long, short) = (grown(&[]), grown(&["--set", "style.length=0.05"]));
+    assert!(long > 0.1 && (0.04..0.06).contains(&short), "{long} m, {short} m");
+    for (set, word) in [
+        ("style.length=9", "0.01"),
+        ("groom.points_per_strand=8", "--guides"),
+        ("look.grey=1", "keys of `style`"),
+        ("style.seed=3", "keys of `style`"),
+    ] {
+        let output = refused(at, &["groom", "--style", "bob", "--set", set, "--out", "no.hair"]);
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{set}: {error}");
+        assert!(error.contains(set.split('=').next().unwrap()) && error.contains(word), "{set}: {error}");
+    }
+}

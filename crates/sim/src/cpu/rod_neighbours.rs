@@ -76,6 +76,16 @@ struct Motion {
     ways: f64,
 }
 
+impl Motion {
+    /// That of all blocks: in one order, whatever the threads.
+    fn of_all(blocks: &[Self]) -> Self {
+        let nothing = Self { stays: true, ways: 0.0 };
+        blocks
+            .iter()
+            .fold(nothing, |one, other| Self { stays: one.stays && other.stays, ways: one.ways + other.ways })
+    }
+}
+
 impl Neighbours {
     /// Replaces `near` by the pairs that touch, or may come to touch in a part whose strands lie at `start` and go on by
     /// `coast` \[m\]; `pairs` are those of the part before.
@@ -178,12 +188,7 @@ impl Neighbours {
                 Motion { stays, ways: sum.to_array()[..live].iter().copied().map(f64::from).sum() }
             })
             .collect_into_vec(&mut motions);
-        // In one order, whatever the threads.
-        let nothing = Motion { stays: true, ways: 0.0 };
-        let all = motions.iter().fold(nothing, |one, other| Motion {
-            stays: one.stays && other.stays,
-            ways: one.ways + other.ways,
-        });
+        let all = Motion::of_all(&motions);
         self.motions = motions;
         all
     }
