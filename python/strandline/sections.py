@@ -23,8 +23,8 @@ class GroomParts(TypedDict, total=False):
     """A file as `groom.file`. Allowed: the path of a file."""
 
     name: str
-    """Name of the group that its strands are, where the file has no groups of its own; without one that of the file.
-    Allowed: a name."""
+    """Name of the group that its strands are, where the file has no named groups of its own; without one that of the
+    file. Allowed: a name."""
 
     scale: float | str
     """Metres per unit of the file; "auto" takes that of `groom.file`, or what brings the roots to the body. Allowed:
@@ -173,7 +173,7 @@ class Style(TypedDict, total=False):
 
     style: str
     """The style. Allowed: one of bob, long, wavy, curly, pixie, ponytail, buzz, side_swept, afro, coils, bun, braid,
-    beard, brows."""
+    beard, brows, lashes."""
 
     strand_count: int
     """Number of strands: guides for the renderer's follow strands. Allowed: 1 to 8,000,000."""
