@@ -55,7 +55,7 @@ fn a_groom_is_grown_with_settings_of_its_style_and_head() {
         let all = [&["groom", "--style", "bob", "--strands", "60", "--out", "bob.hair"][..], set].concat();
         let output = strandline(at, &all);
         assert!(output.status.success(), "{all:?}: {}", String::from_utf8_lossy(&output.stderr));
-        let lengths = strandline::Groom::load(&at.join("bob.hair")).unwrap().lengths();
+        let lengths = strandline::Groom::load(at.join("bob.hair")).unwrap().lengths();
         lengths.iter().sum::<f32>() / 60.0
     };
     let (long, short) = (grown(&[]), grown(&["--set", "style.length=0.05"]));
