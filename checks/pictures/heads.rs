@@ -162,6 +162,7 @@ fn light_hair_on_a_head_is_as_bright_as_path_tracing_shows_it() {
 }
 
 /// Fails where the light of a view's hair is not that of its reference.
+#[allow(clippy::print_stdout)] // tests may print
 fn compare(views: &[View]) {
     let mut failed = Vec::new();
     for view in views {
