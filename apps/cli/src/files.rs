@@ -21,8 +21,7 @@ pub fn groom(options: &GroomOptions) -> anyhow::Result<()> {
             "strandline groom takes keys of `style`, `body.build`, `body.eyes` and `groom.points_per_strand`";
         return Err(Usage(format!("--set {other}: {mend}")).into());
     }
-    if options.guides.is_none()
-        && options.values.iter().any(|value| value.starts_with("groom.points_per_strand"))
+    if options.guides.is_none() && options.values.iter().any(|value| key(value) == "groom.points_per_strand")
     {
         let mend =
             "--guides writes hair as a scene draws it; without it strands have the points of their style";
@@ -39,9 +38,14 @@ pub fn groom(options: &GroomOptions) -> anyhow::Result<()> {
     write(&groom, &options.out)
 }
 
+/// The key of a setting, `KEY=VALUE`.
+fn key(setting: &str) -> &str {
+    setting.split('=').next().unwrap_or_default().trim()
+}
+
 /// True for a setting of the style or of the head that it grows on, `KEY=VALUE`; not for those that have options.
 fn of_style(setting: &str) -> bool {
-    let key = setting.split('=').next().unwrap_or_default().trim();
+    let key = key(setting);
     let has_option = ["style.style", "style.strand_count", "style.seed"].contains(&key);
     let of_head = ["body.build", "body.eyes", "groom.points_per_strand"].contains(&key);
     key.starts_with("style.") && !has_option || of_head
