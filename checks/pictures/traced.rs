@@ -15,8 +15,9 @@ const BANDS: usize = 16;
 const DIM: f32 = 0.2;
 
 /// Lights, the directions in which they go, and the greatest share by which a channel of the whole may differ, and of a
-/// band. Light from below that the camera's side throws back is too bright. Hair that showed no more of straight light
-/// than meets it was 0.15 too dark from above, and 0.2 too bright from below. With the inclinations of the 26 directions alone white hair from behind was 0.22 off, hair
+/// band. Light from below that the camera's side throws back is too bright, and a band of brown hair that is lit from above
+/// is 0.37 off. Hair that shows no more of straight light than meets it is 0.15 too dark from above as a whole, with no
+/// band beyond 0.3, and 0.2 too bright from below. With the inclinations of the 26 directions alone white hair from behind was 0.22 off, hair
 /// of any pigment but black from aside 0.28, and bands of it up to 0.96.
 const LIGHTS: [(&str, [f32; 3], [f32; 2]); 4] = [
     ("behind", [-0.3, -0.5, 0.8], [0.1, 0.45]),
