@@ -85,7 +85,7 @@ pub fn stepped(on: &On, model: &Model, seconds: f32, motion: impl Fn(f64) -> Pos
 law! {
     long fn a_style_stays_as_it_was_groomed(on) {
         let styles = [Style::Bob, Style::Wavy, Style::Curly, Style::Long, Style::Pixie, Style::Ponytail];
-        for name in styles.into_iter().take(on.either(6, 3)) {
+        for name in styles.into_iter().take(on.brief(on.either(6, 3), 3)) {
             for volume in [true, false].into_iter().take(on.either(2, 1)) {
                 let mut settings = settings(StrandMethod::Rods, 1.0 / 60.0);
                 settings.volume.enabled = volume;

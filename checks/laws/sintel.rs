@@ -56,9 +56,9 @@ law! {
         let speed = 2.0 * PI * 5.0;
         let amplitude = 20.0 * 9.81 / (speed * speed);
         for settings in [Settings::default(), Settings::constrained()] {
-            let still = depth(on, &prepared, &settings, on.either(60, 20), |_| Pose::IDENTITY);
-            let shaken = depth(on, &prepared, &settings, on.either(180, 60), |time| prepared.head.pose(time));
-            let violent = depth(on, &prepared, &settings, on.either(60, 24), |time| Pose {
+            let still = depth(on, &prepared, &settings, on.brief(on.either(60, 20), 20), |_| Pose::IDENTITY);
+            let shaken = depth(on, &prepared, &settings, on.brief(on.either(180, 60), 90), |time| prepared.head.pose(time));
+            let violent = depth(on, &prepared, &settings, on.brief(on.either(60, 24), 24), |time| Pose {
                 translation: Vec3::X * amplitude * (speed * time as f32).sin(),
                 ..Pose::IDENTITY
             });

@@ -25,7 +25,8 @@ law! {
         let time = on.either(0.1, 1.0 / 30.0);
         let expected = fallen(on, 1.0 / 4800.0, time);
         assert!(expected > 0.3 * 9.81 * time * time, "{expected} m in {time} s");
-        for time_step in [1.0 / 60.0, 1.0 / 240.0, 1.0 / 960.0, 5e-5, 1e-5] {
+        // The shortest takes three of four steps: a software adapter leaves it to the CPU.
+        for time_step in [1.0 / 60.0, 1.0 / 240.0, 1.0 / 960.0, 5e-5, 1e-5].into_iter().take(on.short(5, 4)) {
             let found = fallen(on, time_step, time);
             // Implicit Euler falls by n (n + 1) / 2 parts of a step squared, half a step too long in all. Found on the CPU
             // 0.8 % at 1/60 s, 2e-6 at 1e-5 s.
@@ -38,7 +39,7 @@ law! {
 law! {
     fn hair_at_rest_stays_in_steps_of_any_length(on) {
         let styles = [Style::Curly, Style::Long, Style::Ponytail, Style::Bob, Style::Wavy, Style::Pixie];
-        for name in styles.into_iter().take(on.either(6, 1)) {
+        for name in styles.into_iter().take(on.brief(on.either(6, 1), 2)) {
             for time_step in [0.1, 1.0 / 60.0, 1.0 / 960.0, 5e-5, 1e-5] {
                 let mut settings = settings(StrandMethod::Rods, time_step);
                 settings.volume.enabled = false;
@@ -54,8 +55,9 @@ law! {
 
 law! {
     fn a_small_swing_ends_where_the_hair_hangs(on) {
-        for volume in [false, true] {
-            for rate in [60.0, 240.0, 960.0].into_iter().take(on.either(3, 1)) {
+        // A volume hardly knows of one strand: it is there at the longest step, and on a software adapter in the long form.
+        for (volume, rates) in [(false, on.either(3, 1)), (true, on.short(on.brief(3, 1), 0))] {
+            for rate in [60.0, 240.0, 960.0].into_iter().take(rates) {
                 small_swing(on, rate, volume);
             }
         }
