@@ -5,7 +5,10 @@ use strandline::{
     Groom, Mesh, Scene,
     format::{LoadOptions, Parsed, bin, data, hair, npy, npz, obj, ply, prepare, project, tfx, usda},
     look::surroundings::{Panorama, Surroundings},
-    low_level::groom::{GroomError, Guides},
+    low_level::{
+        body::{BodyFrame, Playback, RecordedMotion, SkinMotion, SkinRoots},
+        groom::{GroomError, Guides},
+    },
     mesh::{DistanceGrid, MeshFormat, SignedDistance},
 };
 
@@ -13,7 +16,7 @@ use strandline::{
 pub type Target = fn(&[u8]) -> bool;
 
 /// Every target by its name, which is also that of its folder of seeds.
-pub const TARGETS: [(&str, Target); 22] = [
+pub const TARGETS: [(&str, Target); 24] = [
     ("hair", hair_file),
     ("tfx", tfx_file),
     ("project", project_file),
@@ -26,6 +29,8 @@ pub const TARGETS: [(&str, Target); 22] = [
     ("lines", lines),
     ("obj", obj),
     ("gltf", gltf),
+    ("clips", clips),
+    ("bvh", bvh),
     ("scan", scan),
     ("stl", stl),
     ("beside", beside),
@@ -132,6 +137,40 @@ pub fn obj(bytes: &[u8]) -> bool {
 /// A glTF file, as an OBJ file.
 pub fn gltf(bytes: &[u8]) -> bool {
     mesh(bytes, MeshFormat::Gltf)
+}
+
+/// Clips of a glTF file are refused, or move the body: its head, its vertices and roots on it are somewhere at any time.
+pub fn clips(bytes: &[u8]) -> bool {
+    let Ok(names) = Mesh::clips_in(bytes) else { return false };
+    let play = |name: &String| {
+        Mesh::moving_from(bytes, name).is_ok_and(|(mesh, motion, _)| {
+            assert_eq!(motion.vertex_count(), mesh.positions.len());
+            let playback = Playback { speed: -1.5, is_loop: true, ..Playback::default() };
+            let places = &mesh.positions;
+            let body =
+                SkinMotion::new(motion, playback, places, (0.5, Default::default()), &[]).expect("a body");
+            let roots = SkinRoots::new(&mesh, &[places[0], places[places.len() / 2] * 1.01]);
+            let mut last = BodyFrame::REST;
+            for time in [-1.0, 0.3, 0.4, 1.9, f64::NAN, 1e300] {
+                let frame = roots.placed(body.frame(time), &last);
+                frame.check(Some(2), Some(places.len())).expect("a body that is somewhere");
+                last = frame;
+            }
+            true
+        })
+    };
+    // Each clip reads the whole file.
+    names.iter().take(4).filter(|name| play(name)).count() > 0
+}
+
+/// The motion of a joint of a .bvh is read or refused; what was read is somewhere at any time.
+pub fn bvh(bytes: &[u8]) -> bool {
+    RecordedMotion::from_bvh(bytes, "Head", 0.01).is_ok_and(|motion| {
+        for time in [-1.0, 0.3, 1.9, f64::NAN, 1e300] {
+            BodyFrame::from(motion.pose(time, [0.0, 0.1, 0.0].into())).check(None, None).expect("a pose");
+        }
+        true
+    })
 }
 
 /// A PLY file with faces, as an OBJ file.

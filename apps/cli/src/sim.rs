@@ -3,7 +3,7 @@
 use strandline::file::counted;
 use strandline::mesh::Placement;
 use strandline::{
-    Cache, Drift, Event, Measures, OutSettings, Player, Scene, StepReport, Stiffening, Written,
+    Cache, Drift, Event, Jump, Measures, OutSettings, Player, Scene, StepReport, Stiffening, Written,
 };
 
 use crate::arguments::SimOptions;
@@ -11,7 +11,7 @@ use crate::interrupt::Stoppable;
 use crate::non_finite::{NonFinite, larger};
 use crate::output::{self, print_line};
 use crate::progress::{LOADING, Progress, Waiting};
-use crate::sim_report::{Contacts, OutReport, Pcg, Rods, SimReport, Spread, Stretch};
+use crate::sim_report::{Contacts, JumpReport, OutReport, Pcg, Rods, SimReport, Spread, Stretch};
 use crate::statistics::Collector;
 
 /// Gathers step reports: sums and largest values.
@@ -43,6 +43,7 @@ pub struct Ended {
     pub drift: Drift,
     pub measures: Measures,
     pub stiffening: Stiffening,
+    pub jumps: Vec<Jump>,
     pub placement: Placement,
     /// \[s\].
     pub time_step: f32,
@@ -64,6 +65,7 @@ impl Ended {
             drift: player.drift()?,
             measures: player.measures()?,
             stiffening: player.stiffening(),
+            jumps: player.jumps(),
             placement: player.placement(),
             time_step: scene.simulation.time_step,
             tolerance: scene.simulation.volume.tolerance,
@@ -127,6 +129,7 @@ impl Steps {
             stiffest: end.stiffening.most,
             rods: self.rods,
             contacts: self.contacts,
+            jumps: end.jumps.into_iter().map(JumpReport::from).collect(),
             non_finite: self.non_finite.clone(),
             pcg: Pcg {
                 iterations_mean: mean(self.iterations),

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
-use strandline::Extent;
 use strandline::mesh::Placement;
+use strandline::{Extent, Jump};
 
 use crate::non_finite::NonFinite;
 use crate::statistics::Times;
@@ -36,6 +36,8 @@ pub struct SimReport {
     pub rods: Option<Rods>,
     /// `None` where strands pass through each other.
     pub contacts: Option<Contacts>,
+    /// Jumps of the body, over which hair was carried.
+    pub jumps: Vec<JumpReport>,
     #[serde(flatten)]
     pub non_finite: NonFinite,
     pub pcg: Pcg,
@@ -43,6 +45,21 @@ pub struct SimReport {
     /// Files written by `--out`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub out: Option<OutReport>,
+}
+
+/// A jump of the body.
+#[derive(Debug, Serialize)]
+pub struct JumpReport {
+    /// Time of the film \[s\].
+    pub time: f64,
+    /// Way and angle, human-readable.
+    pub what: String,
+}
+
+impl From<Jump> for JumpReport {
+    fn from(Jump { time, what }: Jump) -> Self {
+        Self { time, what }
+    }
 }
 
 /// A file of hair that moved.

@@ -28,6 +28,8 @@ pub struct BodyFrame {
     has_jumped: bool,
     /// Number of marks of the motion up to here; `None` of one without marks.
     jumps: Option<i64>,
+    /// Skin vertices that the motion has at no place.
+    held_count: usize,
 }
 
 impl From<Pose> for BodyFrame {
@@ -77,6 +79,7 @@ impl BodyFrame {
         skin: None,
         has_jumped: false,
         jumps: None,
+        held_count: 0,
     };
 
     /// Adds the transforms of the pieces after the head, `world_from_piece`, piece 1 first.
@@ -128,6 +131,16 @@ impl BodyFrame {
         next.has_jumped || self.jumps.zip(next.jumps).is_some_and(|(here, there)| here != there)
     }
 
+    /// Counts the skin vertices that a motion has at no place, and that rest for it.
+    pub(crate) fn with_held(self, held_count: usize) -> Self {
+        Self { held_count, ..self }
+    }
+
+    /// Number of skin vertices that the motion has at no finite place, or too far away: they stay where they are at rest.
+    pub fn held_count(&self) -> usize {
+        self.held_count
+    }
+
     /// The frame without root frames.
     pub(crate) fn without_roots(self) -> Self {
         Self { roots: None, rides_skin: false, ..self }
@@ -145,6 +158,7 @@ impl BodyFrame {
             skin: self.skin.clone(),
             has_jumped: self.has_jumped,
             jumps: self.jumps,
+            held_count: self.held_count,
         }
     }
 
@@ -238,6 +252,7 @@ impl BodyFrame {
             skin,
             has_jumped: false,
             jumps: self.jumps.or(end.jumps),
+            held_count: self.held_count.max(end.held_count),
         }
     }
 

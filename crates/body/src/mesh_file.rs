@@ -83,6 +83,27 @@ impl Mesh {
         Ok((mesh.complete(path)?, VertexMotion::of_clip(rig), notes))
     }
 
+    /// As [`Mesh::load_moving`], from the bytes of a file, which must hold its buffers itself.
+    ///
+    /// # Errors
+    /// See [`BodyError`].
+    pub fn moving_from(bytes: &[u8], clip: &str) -> Result<(Self, VertexMotion, Vec<String>), BodyError> {
+        let mut notes = Vec::new();
+        let (mesh, rig) = gltf::parse_moving(bytes, None, clip, &mut notes).map_err(|fault| match fault {
+            Fault::Memory(error) => BodyError::Memory(error),
+            Fault::Refused((found, expected)) => BodyError::BadMesh { found, expected },
+        })?;
+        Ok((mesh.complete(Path::new(""))?, VertexMotion::of_clip(rig), notes))
+    }
+
+    /// As [`Mesh::clip_names`], from the bytes of a file.
+    ///
+    /// # Errors
+    /// See [`BodyError`].
+    pub fn clips_in(bytes: &[u8]) -> Result<Vec<String>, BodyError> {
+        gltf::clip_names(bytes).map_err(|(found, expected)| BodyError::BadMesh { found, expected })
+    }
+
     /// Names of the clips of a glTF file, in their order; a clip without a name has that of its number.
     ///
     /// # Errors

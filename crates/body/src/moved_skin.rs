@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use crate::carried_normals::CarriedNormals;
+use crate::inside_out::RestVolume;
 use crate::mesh::normals_about;
 use crate::neck::Bend;
 use crate::welding::welded_vertices;
@@ -13,13 +15,43 @@ use crate::{BodyFrame, Mesh};
 /// The vertices of a mesh as they were drawn last, and the normals that follow from them.
 #[derive(Clone, Debug, Default)]
 pub struct MovedSkin {
-    /// Vertices at one place at rest, which share a normal; found once.
-    welded: Vec<u32>,
+    /// What normals follow from; found once.
+    rest: Option<Rest>,
     positions: Option<Arc<[Vec3]>>,
     /// Bend of the neck, and the vertices under it.
     bend: Option<Bend>,
     bent: Vec<Vec3>,
     normals: Vec<Vec3>,
+}
+
+/// A mesh at rest, as the normals of its skin need it.
+#[derive(Clone, Debug)]
+struct Rest {
+    /// Vertices at one place, which share a normal.
+    welded: Vec<u32>,
+    /// Normals of the file; `None` for those of the triangles.
+    carried: Option<CarriedNormals>,
+    volume: RestVolume,
+}
+
+impl Rest {
+    fn new(mesh: &Mesh) -> Self {
+        let welded = welded_vertices(&mesh.positions);
+        let carried = CarriedNormals::new(mesh, &welded);
+        Self { welded, carried, volume: RestVolume::new(&mesh.positions, &mesh.triangles) }
+    }
+
+    /// Unit normals of a skin, which point out of it also where it is inside out.
+    fn normals(&self, skin: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+        let mut normals = match &self.carried {
+            Some(carried) => carried.on(skin, triangles),
+            None => normals_about(&self.welded, skin, triangles),
+        };
+        if self.volume.side(skin, triangles) < 0.0 {
+            normals.iter_mut().for_each(|normal| *normal = -*normal);
+        }
+        normals
+    }
 }
 
 impl Mesh {
@@ -49,9 +81,10 @@ impl Mesh {
 impl MovedSkin {
     /// Takes the vertices of a mesh in a frame of the body: its skin, if that has as many vertices, or the mesh at rest, with
     /// its neck bent as the pieces of the frame are. Returns true where the shape is another one than before, of which the
-    /// normals are computed anew.
+    /// normals are computed anew: those of the triangles, or those of the mesh as its triangles carry them.
     pub fn take(&mut self, mesh: &Mesh, body: &BodyFrame) -> bool {
-        let skin = mesh.skin_in(body);
+        // A skin at rest has the normals of the mesh, to the bit.
+        let skin = mesh.skin_in(body).filter(|skin| skin[..] != mesh.positions[..]);
         let bend = mesh.bend_in(body).filter(|_| skin.is_none());
         let is_same = match (&self.positions, skin) {
             (Some(known), Some(skin)) => Arc::ptr_eq(known, skin) || known == skin,
@@ -65,10 +98,8 @@ impl MovedSkin {
             bend.skin([&mesh.positions, &mesh.normals], &mut self.bent, &mut self.normals);
         }
         if let Some(skin) = skin {
-            if self.welded.is_empty() {
-                self.welded = welded_vertices(&mesh.positions);
-            }
-            self.normals = normals_about(&self.welded, skin, &mesh.triangles);
+            let rest = self.rest.get_or_insert_with(|| Rest::new(mesh));
+            self.normals = rest.normals(skin, &mesh.triangles);
         }
         true
     }
@@ -121,6 +152,37 @@ mod tests {
         assert!(!skin.take(&mesh, &at(turned.iter().copied().collect())));
         assert!(skin.take(&mesh, &at(Arc::from([Vec3::ZERO]))));
         assert_eq!(skin.shape(&mesh)[0], &mesh.positions[..]);
+    }
+
+    #[test]
+    fn normals_of_a_file_are_those_of_the_mesh_at_rest_and_go_with_the_skin() {
+        let mut mesh = octahedron();
+        let drawn = |place: &Vec3| (*place * vec3(1.0, -0.5, 2.0)).normalize();
+        mesh.normals = mesh.positions.iter().map(drawn).collect();
+        let mut skin = MovedSkin::default();
+        assert!(!skin.take(&mesh, &BodyFrame::REST.with_skin(mesh.positions.clone())));
+        assert_eq!(skin.shape(&mesh), [&mesh.positions[..], &mesh.normals[..]]);
+        let turn = Quat::from_rotation_x(1.1);
+        let turned: Vec<Vec3> = mesh.positions.iter().map(|place| turn * (2.0 * *place)).collect();
+        assert!(skin.take(&mesh, &BodyFrame::REST.with_skin(turned)));
+        for (found, rest) in skin.shape(&mesh)[1].iter().zip(&mesh.normals) {
+            assert!(found.distance(turn * *rest) < 1e-5, "{found} of {rest}");
+        }
+    }
+
+    #[test]
+    fn normals_of_a_skin_that_is_inside_out_point_out_of_it() {
+        let mesh = octahedron();
+        for normals in [mesh.normals.clone(), mesh.positions.iter().map(|place| place.normalize()).collect()]
+        {
+            let mesh = Mesh { normals, ..mesh.clone() };
+            let mirror = |place: &Vec3| vec3(-0.8 * place.x, place.y, place.z);
+            let mirrored: Vec<Vec3> = mesh.positions.iter().map(mirror).collect();
+            let mut skin = MovedSkin::default();
+            assert!(skin.take(&mesh, &BodyFrame::REST.with_skin(mirrored)));
+            let [positions, normals] = skin.shape(&mesh);
+            assert!(positions.iter().zip(normals).all(|(place, normal)| place.dot(*normal) > 0.5));
+        }
     }
 
     #[test]

@@ -35,6 +35,10 @@ pub struct PosedSkin {
     shifts: Option<LocalShifts>,
     /// Mean way \[m\] of the corners of each triangle; empty where nothing moves.
     drifts: Vec<Vec3>,
+    /// Side of the triangles that is outside at the end: 1 the front, -1 the back.
+    pub(crate) facing: f32,
+    /// True where the step turns the skin inside out, or back.
+    turns_over: bool,
 }
 
 /// The nearest place of a skin.
@@ -95,7 +99,10 @@ impl PosedSkin {
         };
         let triangles = if moves { &solid.triangles[..] } else { &[] };
         let drifts = triangles.par_iter().with_min_len(2048).map(drift).collect();
-        Some(Self { solid: Arc::clone(solid), made_of, start, end, boxes, most_shift, shifts, drifts })
+        let [facing, before] = solid.facings([&end, &start], most_shift);
+        let turns_over = facing != before;
+        let solid = Arc::clone(solid);
+        Some(Self { solid, made_of, start, end, boxes, most_shift, shifts, drifts, facing, turns_over })
     }
 
     /// The skin of a collider that the head carries, through a step between two frames of the body; `None` for other
@@ -236,7 +243,7 @@ impl PosedSkin {
     /// Signed distance and gradient about a nearest triangle.
     fn seen(&self, point: Vec3, triangle: u32, away: f32) -> SkinPlace {
         let (place, feature) = nearest_on(self.corners(&self.end, triangle), point);
-        let outward = self.outward(triangle, feature) * self.solid.facing;
+        let outward = self.outward(triangle, feature) * self.facing;
         let is_inside =
             outward.dot(point - place) < 0.0 && !self.is_before_a_fold(point, triangle, feature, place);
         let side = if is_inside { -1.0 } else { 1.0 };
@@ -293,9 +300,10 @@ impl PosedSkin {
         self.drifts.get(triangle as usize).copied().unwrap_or_default()
     }
 
-    /// Motion of a triangle about its place nearest to a point of the start \[m\]; `None` where it has no area.
+    /// Motion of a triangle about its place nearest to a point of the start \[m\]; `None` where it has no area, and in a step
+    /// that turns the skin inside out.
     pub fn motion(&self, triangle: u32, point: Vec3) -> Option<TriangleMotion> {
-        if triangle as usize >= self.solid.triangles.len() {
+        if triangle as usize >= self.solid.triangles.len() || self.turns_over {
             return None;
         }
         let [start, end] = [&self.start, &self.end].map(|positions| self.corners(positions, triangle));

@@ -39,9 +39,7 @@ impl RecordedMotion {
         };
         let bytes = read_file(path)?;
         if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("bvh")) {
-            let motion = bvh::parse(&bytes, joint).map_err(refused)?;
-            let (source, teleports) = (Source::Joint(Arc::new(motion)), Teleports::default());
-            return Ok(Self { source, scale, teleports });
+            return Ok(Self::of_joint(bvh::parse(&bytes, joint).map_err(refused)?, scale));
         }
         let names = gltf::clip_names(&bytes).map_err(refused)?;
         let clip = clip.or(names.first().map(String::as_str)).unwrap_or_default();
@@ -57,6 +55,20 @@ impl RecordedMotion {
         };
         let teleports = rig.teleports().clone();
         Ok(Self { source: Source::Node(Arc::new(rig), node), scale, teleports })
+    }
+
+    /// Reads the motion of a joint from the bytes of a .bvh.
+    ///
+    /// # Errors
+    /// See [`BodyError`].
+    pub fn from_bvh(bytes: &[u8], joint: &str, scale: f64) -> Result<Self, BodyError> {
+        let motion =
+            bvh::parse(bytes, joint).map_err(|(found, expected)| BodyError::BadMesh { found, expected })?;
+        Ok(Self::of_joint(motion, scale))
+    }
+
+    fn of_joint(motion: JointMotion, scale: f64) -> Self {
+        Self { source: Source::Joint(Arc::new(motion)), scale, teleports: Teleports::default() }
     }
 
     /// Adds marks, times of the motion \[s\] at which the head is elsewhere at once: see

@@ -71,7 +71,7 @@ impl PosedSkin {
         let mut around = 0;
         for place in (0..count).rev() {
             around += turns[place + 1];
-            sides.inside |= u64::from(around as f32 * self.solid.facing > 0.0) << place;
+            sides.inside |= u64::from(around as f32 * self.facing > 0.0) << place;
         }
         Some(sides)
     }

@@ -80,16 +80,21 @@ impl Moving {
         self.motion.marks().passed(self.time(time), self.playback.rounds(time, self.motion.end()))
     }
 
-    /// Writes the places of its vertices at a time of the motion \[s\] over those at rest, head space \[m\].
-    fn place(&self, time: f64, rest: &mut [Vec3]) {
+    /// Writes the places of its vertices at a time of the motion \[s\] over those at rest, head space \[m\]. Returns the number
+    /// of those that have none and are held at rest.
+    fn place(&self, time: f64, rest: &mut [Vec3]) -> usize {
         let moved = self.motion.positions(time);
+        let mut held_count = 0;
         for ((rest, origin), moved) in rest[self.range()].iter_mut().zip(&*self.origin).zip(moved) {
-            // Vertices that do not move stay to the bit; those that overflow are held at rest.
+            // Vertices that do not move stay to the bit.
             let place = *rest + self.turn * (self.scale * (moved - *origin));
             if place.is_finite() && place.abs().max_element() < FARTHEST {
                 *rest = place;
+            } else {
+                held_count += 1;
             }
         }
+        held_count
     }
 }
 
@@ -177,18 +182,20 @@ impl SkinMotion {
     /// The body at times of its motions \[s\].
     fn computed(&self, times: &[f64]) -> BodyFrame {
         let mut skin = self.rest.to_vec();
-        self.parts.iter().zip(times).for_each(|(part, time)| part.place(*time, &mut skin));
+        let held = self.parts.iter().zip(times).map(|(part, time)| part.place(*time, &mut skin));
+        let held_count = held.sum();
         let world_from_head = rigid_fit(&self.rest, &skin, &self.fitted);
         let head_from_world = world_from_head.inverse();
         for range in self.parts.iter().map(Moving::range) {
             skin[range].iter_mut().for_each(|place| *place = head_from_world.point(*place));
         }
-        BodyFrame::from(world_from_head).with_skin(skin)
+        BodyFrame::from(world_from_head).with_skin(skin).with_held(held_count)
     }
 
-    /// Greatest distance \[m\] between where vertices are at the end of a motion that begins again and where they are at its
-    /// beginning; 0 where no motion does, and for one whose beginning is marked as a jump.
-    pub fn gap_of_loops(&self) -> f32 {
+    /// For each motion, in the order in which they were added, the greatest distance \[m\] between where vertices are at its
+    /// end and where they are at its beginning; 0 for one that does not begin again, and for one whose beginning is marked as
+    /// a jump.
+    pub fn gaps_of_loops(&self) -> Vec<f32> {
         let gap = |part: &Moving| {
             let end = part.motion.end();
             if !part.playback.is_loop || end <= 0.0 || part.motion.teleports().contains(&0.0) {
@@ -198,7 +205,7 @@ impl SkinMotion {
             let apart = from.iter().zip(&to).map(|(from, to)| part.scale * from.distance(*to));
             apart.filter(|apart| apart.is_finite()).fold(0.0, f32::max)
         };
-        self.parts.iter().map(gap).fold(0.0, f32::max)
+        self.parts.iter().map(gap).collect()
     }
 }
 
@@ -293,11 +300,25 @@ mod tests {
         assert!(!both.frame(0.2).jumps_to(&both.frame(0.3)));
         let jumping = marked(part.clone().with_teleports(&[0.0]).unwrap());
         assert!(jumping.frame(0.2).jumps_to(&jumping.frame(0.3)));
-        assert!((both.gap_of_loops() - 0.2).abs() < 1e-6 && jumping.gap_of_loops() == 0.0);
-        assert_eq!(body.gap_of_loops(), 0.0);
+        let [of_body, of_part] = both.gaps_of_loops()[..] else { panic!("two motions") };
+        assert!(of_body == 0.0 && (of_part - 0.2).abs() < 1e-6);
+        assert_eq!((jumping.gaps_of_loops(), body.gaps_of_loops()), (vec![0.0; 2], vec![0.0]));
         let refused = |first| body.clone().with_part(first, part.clone(), playback, (1.0, turn)).unwrap_err();
         assert!(refused(4).to_string().contains("4..6, beside 0..5"));
         assert!(refused(7).to_string().contains("2, for a mesh of 8"));
+    }
+
+    #[test]
+    fn vertices_at_no_place_rest_and_are_counted() {
+        let (_, rest, turn) = motion();
+        let mut far = rest.clone();
+        (far[3], far[4]) = (Vec3::X * 1e9, Vec3::Y * f32::MAX);
+        let motion = VertexMotion::sampled(vec![0.0, 1.0], vec![rest.clone(), far]).unwrap();
+        let body = SkinMotion::new(motion, Playback::default(), &rest, (1.0, turn), &[0, 1, 2]).unwrap();
+        let [start, end] = [0.0, 1.0].map(|time| body.frame(time));
+        assert_eq!((start.held_count(), end.held_count()), (0, 2));
+        assert_eq!(end.skin().unwrap()[..], rest[..]);
+        assert_eq!(start.toward(&end, 0.5).carried_by(&crate::Pose::IDENTITY).held_count(), 2);
     }
 
     #[test]

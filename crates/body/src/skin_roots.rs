@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 use strandline_base::par::prelude::*;
 
+use crate::inside_out::RestVolume;
 use crate::polar::rotation_of;
 use crate::welding::welded_vertices;
 use crate::{BodyFrame, Mesh, Pose};
@@ -14,10 +15,13 @@ use crate::{BodyFrame, Mesh, Pose};
 ///
 /// The rotation of the skin at a vertex is that of the deformation of the triangles around it, by least squares weighted
 /// by their areas at rest; a root has the mean of the three corners of its triangle, so that its frame changes evenly
-/// from triangle to triangle. Stretch of the skin leaves hair as it is.
+/// from triangle to triangle. Stretch of the skin leaves hair as it is. On a skin that is inside out, a mirror image of that
+/// at rest, hair stays outside and is not mirrored: it turns about the normal.
 #[derive(Clone, Debug)]
 pub struct SkinRoots {
     vertex_count: usize,
+    triangles: Vec<[u32; 3]>,
+    volume: RestVolume,
     roots: Vec<Place>,
     corners: Vec<Corner>,
     ring: Vec<RingVertex>,
@@ -40,6 +44,8 @@ struct Place {
 /// The triangles around a place of the mesh: ranges of [`SkinRoots::ring`] and [`SkinRoots::faces`].
 #[derive(Clone, Debug)]
 struct Corner {
+    /// Mean normal at rest, of any length.
+    normal: DVec3,
     ring: Range<usize>,
     faces: Range<usize>,
 }
@@ -69,6 +75,8 @@ impl SkinRoots {
         }
         let mut found = Self {
             vertex_count: mesh.positions.len(),
+            triangles: mesh.triangles.clone(),
+            volume: RestVolume::new(&mesh.positions, &mesh.triangles),
             roots: Vec::with_capacity(roots.len()),
             corners: Vec::new(),
             ring: Vec::new(),
@@ -107,8 +115,9 @@ impl SkinRoots {
         let (ring, faces) = (self.ring.len(), self.faces.len());
         // A normal counts as much as an edge of mean length.
         let size = squares / (3 * triangles.len()).max(1) as f64;
-        let mut sum = DMat3::ZERO;
+        let (mut sum, mut mean) = (DMat3::ZERO, DVec3::ZERO);
         for corners in all() {
+            mean += cross(corners);
             let (weight, normal) = (cross(corners).length() / area, cross(corners).normalize_or_zero());
             for [start, end] in edges(corners) {
                 let edge = place(end) - place(start);
@@ -123,7 +132,8 @@ impl SkinRoots {
         let inverse = if is_sound { sum.inverse() } else { DMat3::ZERO };
         self.ring[ring..].iter_mut().for_each(|vertex| vertex.row = inverse.transpose() * vertex.row);
         self.faces[faces..].iter_mut().for_each(|face| face.row = inverse.transpose() * face.row);
-        self.corners.push(Corner { ring: ring..self.ring.len(), faces: faces..self.faces.len() });
+        let [ring, faces] = [ring..self.ring.len(), faces..self.faces.len()];
+        self.corners.push(Corner { normal: mean, ring, faces });
     }
 
     /// Adds to the row of a vertex among those from `first` on.
@@ -143,8 +153,9 @@ impl SkinRoots {
         if body.roots().is_some() || self.roots.is_empty() {
             return body;
         }
+        let side = f64::from(self.volume.side(&skin, &self.triangles));
         let turns: Vec<Option<DQuat>> =
-            self.corners.par_iter().map(|corner| self.rotation(corner, &skin)).collect();
+            self.corners.par_iter().map(|corner| self.rotation(corner, &skin, side)).collect();
         let world_from_head = body.world_from_head();
         let head_from_last = last.world_from_head().inverse();
         let root = |(index, place): (usize, &Place)| {
@@ -164,8 +175,9 @@ impl SkinRoots {
         if body.roots().is_some() && placed == body { placed } else { body }
     }
 
-    /// Rotation of the skin about a place of the mesh; `None` where it has no area.
-    fn rotation(&self, corner: &Corner, skin: &[Vec3]) -> Option<DQuat> {
+    /// Rotation of the skin about a place of the mesh, whose triangles face outward (1) or inward (-1); `None` where it has
+    /// no area.
+    fn rotation(&self, corner: &Corner, skin: &[Vec3], side: f64) -> Option<DQuat> {
         let ring = &self.ring[corner.ring.clone()];
         if ring.iter().all(|known| skin[known.vertex as usize] == known.rest) {
             return Some(DQuat::IDENTITY);
@@ -177,7 +189,10 @@ impl SkinRoots {
         }
         for RingFace { vertices, row } in &self.faces[corner.faces.clone()] {
             let [a, b, c] = vertices.map(|vertex| skin[vertex as usize].as_dvec3());
-            deformation += outer((b - a).cross(c - a).normalize_or_zero(), *row);
+            deformation += outer((b - a).cross(c - a).normalize_or_zero() * side, *row);
+        }
+        if side < 0.0 {
+            deformation = deformation * mirror_along(corner.normal);
         }
         rotation_of(deformation)
     }
@@ -207,6 +222,13 @@ impl Place {
         let root = self.root + weighted(moved, self.shares) + (rotation * above - above);
         Pose { rotation, translation: root - rotation * self.root }
     }
+}
+
+/// Mirrors along a direction of the skin, across its normal and nearest to the axis from ear to ear.
+fn mirror_along(normal: DVec3) -> DMat3 {
+    let normal = normal.normalize_or(DVec3::Y);
+    let along = (DVec3::X - normal * normal.x).try_normalize().unwrap_or(DVec3::Z);
+    DMat3::IDENTITY - outer(along, along * 2.0)
 }
 
 fn weighted([a, b, c]: [Vec3; 3], shares: Vec3) -> Vec3 {

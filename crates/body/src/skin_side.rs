@@ -37,7 +37,7 @@ impl PosedSkin {
         let away = point - place;
         let sees = |index: u32| {
             let [a, b, c] = self.corners(&self.end, index);
-            (b - a).cross(c - a).dot(away) * self.solid.facing > 0.0
+            (b - a).cross(c - a).dot(away) * self.facing > 0.0
         };
         let is_doubtful = match feature {
             Feature::Face => false,
@@ -79,7 +79,7 @@ impl PosedSkin {
             waiting[count + 1] = index + 1;
             count += 2;
         }
-        crossings as f32 * self.solid.facing > 0.0
+        crossings as f32 * self.facing > 0.0
     }
 }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{Vec3, Vec3A};
 use strandline_base::par::prelude::*;
 
+use crate::inside_out::{RestVolume, side_of};
 use crate::mesh_distance::skin_triangles;
 use crate::welding::welded_vertices;
 use crate::{Aabb, BodyError, DistanceGrid, Mesh};
@@ -42,6 +43,7 @@ pub struct SkinSolid {
     first_around: Vec<u32>,
     /// -1 for a surface that is inside out.
     pub(crate) facing: f32,
+    volume: RestVolume,
 }
 
 /// A node of the tree; the left child follows its parent.
@@ -79,6 +81,7 @@ impl SkinSolid {
         let across = across(&triangles, &welded);
         let (around, first_around) = around(&triangles, &welded);
         let middles = middles(&closed, vertex_count);
+        let volume = RestVolume::new(&rest, &triangles);
         Ok(Self {
             grid,
             vertex_count,
@@ -91,6 +94,7 @@ impl SkinSolid {
             around,
             first_around,
             facing,
+            volume,
         })
     }
 
@@ -124,6 +128,16 @@ impl SkinSolid {
     pub(crate) fn range_around(&self, vertex: u32) -> [u32; 2] {
         let first = self.welded[vertex as usize] as usize;
         [self.first_around[first], self.first_around[first + 1]]
+    }
+
+    /// Sides of the triangles that are outside, as [`Self::facing`], for the vertices at the end of a step and at its start,
+    /// from which they moved by `shift` \[m\] at most.
+    pub(crate) fn facings(&self, [end, start]: [&[Vec3]; 2], shift: f32) -> [f32; 2] {
+        let share = self.volume.share(end, &self.triangles);
+        let side = side_of(share);
+        let keeps = self.volume.keeps_side(share, shift);
+        let before = if keeps { side } else { self.volume.side(start, &self.triangles) };
+        [side, before].map(|side| side * self.facing)
     }
 
     /// Boxes of all nodes about positions \[m\]: their least and greatest corners.

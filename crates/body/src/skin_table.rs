@@ -3,7 +3,7 @@
 use glam::{Vec3, Vec3A};
 
 use crate::skin_solid::SkinSolid;
-use crate::{BodyFrame, Collider, PosedSkin};
+use crate::{BodyFrame, Collider, PosedSkin, Shape};
 
 /// Most waiting nodes of a search: a table of the greatest size that a device binds has a tree of 20 levels.
 #[allow(dead_code)] // shaders read it
@@ -32,6 +32,8 @@ struct Listed {
     moving: [u32; 4],
     first: usize,
     posed: Option<PosedSkin>,
+    /// Side of the triangles that is outside, as they were written last.
+    facing: f32,
 }
 
 impl SkinTable {
@@ -44,8 +46,9 @@ impl SkinTable {
         [at_rest, moving]: [[u32; 4]; 2],
         first: usize,
     ) {
-        let collider = collider.clone();
-        self.skins.push(Listed { collider, header, at_rest, moving, first, posed: None });
+        let Shape::Skin(solid) = &collider.shape else { return };
+        let (facing, collider) = (solid.facing, collider.clone());
+        self.skins.push(Listed { collider, header, at_rest, moving, first, posed: None, facing });
     }
 
     /// The rows that bring a table to a step between two frames of the body; none where it is there.
@@ -63,6 +66,11 @@ impl SkinTable {
                 written.push((listed.header, vec![row]));
             }
             written.extend(posed.as_ref().map(|posed| (listed.first, posed.moving_rows())));
+            if let Some(posed) = posed.as_ref().filter(|posed| posed.facing != listed.facing) {
+                listed.facing = posed.facing;
+                let [.., triangles, _] = places(&posed.solid, listed.first);
+                written.push((triangles as usize, triangle_rows(&posed.solid, posed.facing).collect()));
+            }
             listed.posed = posed;
         }
         written
@@ -93,14 +101,18 @@ pub(crate) fn places(skin: &SkinSolid, first: usize) -> [u32; 4] {
 /// The rows of a skin that rides the head.
 pub(crate) fn rows(skin: &SkinSolid) -> Vec<[u32; 4]> {
     let mut rows = moving_rows(skin, &skin.boxes_about(&skin.rest), [&skin.rest, &skin.rest]);
-    for (corners, across) in skin.triangles.iter().zip(&skin.across) {
-        let [a, b, c] = *corners;
-        let [one, two, three] = *across;
-        rows.extend([[a, b, c, skin.facing.to_bits()], [one, two, three, 0]]);
-    }
+    rows.extend(triangle_rows(skin, skin.facing));
     let around = skin.all_around().chunks(4);
     rows.extend(around.map(|part| std::array::from_fn(|at| part.get(at).copied().unwrap_or_default())));
     rows
+}
+
+/// The rows of triangles whose outside is on a side.
+fn triangle_rows(skin: &SkinSolid, facing: f32) -> impl Iterator<Item = [u32; 4]> {
+    skin.triangles.iter().zip(&skin.across).flat_map(move |(corners, across)| {
+        let ([a, b, c], [one, two, three]) = (*corners, *across);
+        [[a, b, c, facing.to_bits()], [one, two, three, 0]]
+    })
 }
 
 /// The rows of nodes and vertices: what changes when the skin moves.

@@ -108,7 +108,7 @@ pub use player::Player;
 pub use prepare::{Prepared, Sources};
 pub use render::{Camera, Light, Look, Picture, PictureSettings};
 pub use scene::{Devices, HeadMotion, Scene};
-pub use session::{Change, Event, Ray, Touched};
+pub use session::{Change, Event, Jump, Ray, Touched};
 pub use sim::{Backend, Drift, Extent, Measures, Settings, SimError, StepReport, Stiffening};
 
 // Names of this crate's own modules.

@@ -7,7 +7,7 @@ use crate::{
     render::{Camera, Look, PictureSettings},
     scene::{camera_motion::CameraMotion, devices::device_name},
     session::worker::Worker,
-    session::{Change, Event, Session, Simulation, Task, film_timing::FilmTiming},
+    session::{Change, Event, Jump, Session, Simulation, Task, film_timing::FilmTiming},
     sim::{Drift, Measures, Settings, State, Stiffening},
 };
 
@@ -224,6 +224,12 @@ impl Player {
     /// Strands of rods that had to be stiffer for their shape to be stable.
     pub fn stiffening(&self) -> Stiffening {
         self.session.peek(|simulation| simulation.stiffening())
+    }
+
+    /// Jumps of the body up to the frame that is simulated, times of the film, 10,000 at most; of a run that was resumed those
+    /// since then.
+    pub fn jumps(&self) -> Vec<Jump> {
+        self.session.peek(|simulation| simulation.jumps.clone())
     }
 
     /// The device that the hair is simulated on; none on the CPU.

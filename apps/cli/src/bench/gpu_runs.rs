@@ -88,6 +88,7 @@ impl Device {
             drift: plain.drift(&runner.state()?),
             measures: strandline::Measures::default(),
             stiffening: plain.stiffening(),
+            jumps: Vec::new(),
             time_step: scene.simulation.time_step,
             tolerance: scene.simulation.volume.tolerance,
         });

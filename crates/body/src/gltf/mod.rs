@@ -76,6 +76,12 @@ pub(crate) fn parse_moving(
         rig.add(node, part, influences, &file.buffers)
     };
     let mesh = file.mesh(&nodes, None, notes, add)?;
+    notes.extend(rig.inside_out().map(|(time, node)| {
+        format!(
+            "the clip turns what {node} carries inside out at {time:.2} s: hair stays outside of a body that is mirrored as \
+             a whole, and lies within a part that is mirrored alone"
+        )
+    }));
     Ok((mesh, rig))
 }
 

@@ -15,6 +15,8 @@ use super::vertices::{Influences, default_weights, joints_of};
 use crate::parsing::Refusal;
 use crate::teleports::Teleports;
 
+/// Most keys at which a clip is searched for mirror images.
+const MOST_KEYS: usize = 4096;
 /// Share of one node from which on a vertex moves rigidly with it.
 const RIGID: f32 = 0.99;
 
@@ -244,6 +246,36 @@ impl Rig {
             }
             None => shares.push((part.node, 1.0)),
         }
+    }
+
+    /// The first key \[s\] at which what a node carries is a mirror image of what it is at rest, and the node.
+    pub(super) fn inside_out(&self) -> Option<(f64, String)> {
+        let is_negative = |scale: &[f32]| scale.iter().product::<f32>() < 0.0;
+        let scales = || self.tracks.iter().filter(|track| track.property == Property::Scale);
+        let changes = |track: &Track| {
+            let at_rest = self.rest[track.node].matrix().determinant() < 0.0;
+            (0..track.times.len()).any(|key| is_negative(track.value(key)) != at_rest)
+        };
+        if !scales().any(changes) {
+            return None;
+        }
+        let mut times: Vec<f64> = scales().flat_map(|track| &track.times).copied().collect();
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        let of_part = |part: &Part| match &part.skin {
+            Some((skin, _)) => self.skins[*skin].iter().flatten().map(|(joint, _)| *joint).collect(),
+            None => vec![part.node],
+        };
+        let carriers: Vec<usize> = self.parts.iter().flat_map(of_part).collect();
+        let volumes = |time| self.pose(time, &self.teleports).world_from_node;
+        let rest = volumes(None);
+        times.iter().step_by(times.len().div_ceil(MOST_KEYS)).find_map(|time| {
+            let now = volumes(Some(*time));
+            let is_turned = |node: &&usize| now[**node].determinant() * rest[**node].determinant() < 0.0;
+            let node = *carriers.iter().find(is_turned)?;
+            let name = self.names[node].as_ref();
+            Some((*time, name.map_or_else(|| format!("node {node}"), |name| format!("`{name}`"))))
+        })
     }
 
     /// The number of the first node of a name.

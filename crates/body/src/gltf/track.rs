@@ -51,7 +51,7 @@ impl Track {
     }
 
     /// The value itself of a key.
-    fn value(&self, key: usize) -> &[f32] {
+    pub fn value(&self, key: usize) -> &[f32] {
         self.part(key, usize::from(self.way == Way::Cubic))
     }
 

@@ -6,6 +6,7 @@ mod closing;
 mod distance_grid;
 mod files;
 mod gltf_files;
+mod inside_out;
 mod mesh_files;
 mod neck;
 mod obj_looks;

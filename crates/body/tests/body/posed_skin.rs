@@ -18,7 +18,7 @@ fn winding(mesh: &Mesh, point: Vec3) -> f64 {
 }
 
 /// A tube along y, open at its lower end, 40 cm long and 10 cm wide.
-fn tube() -> Mesh {
+pub fn tube() -> Mesh {
     let (rings, around) = (41_u32, 32_u32);
     let at = |ring: u32, side: u32| {
         let angle = 2.0 * PI * side as f32 / around as f32;
@@ -51,7 +51,7 @@ fn bent(mesh: &Mesh, angle: f32) -> Arc<[Vec3]> {
     mesh.positions.iter().map(place).collect()
 }
 
-fn solid(mesh: &Mesh, spacing: f32) -> Arc<SkinSolid> {
+pub fn solid(mesh: &Mesh, spacing: f32) -> Arc<SkinSolid> {
     let grid = DistanceGrid::of_mesh(mesh, spacing, 0.02).unwrap();
     Arc::new(SkinSolid::new(mesh, Arc::new(grid)).unwrap())
 }
@@ -94,6 +94,20 @@ fn a_bent_tube_has_exact_distances_and_its_hole_bends_too() {
     for angle in [0.3, 1.5, 3.0] {
         compare(&mesh, &solid, &bent(&mesh, angle), 2000);
     }
+}
+
+/// A mesh whose triangles share no vertex.
+pub fn soup(mesh: &Mesh) -> Mesh {
+    let positions: Vec<Vec3> =
+        mesh.triangles.iter().flatten().map(|corner| mesh.positions[*corner as usize]).collect();
+    let triangles = (0..mesh.triangles.len() as u32).map(|index| [0, 1, 2].map(|corner| 3 * index + corner));
+    Mesh::new(positions, triangles.collect()).unwrap()
+}
+
+#[test]
+fn a_soup_of_triangles_has_the_distances_of_its_surface() {
+    let mesh = soup(&tube());
+    compare(&mesh, &solid(&mesh, 0.01), &bent(&mesh, 1.5), 1000);
 }
 
 #[test]

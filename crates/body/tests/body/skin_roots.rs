@@ -103,6 +103,16 @@ fn a_bending_sheet_turns_its_roots_evenly() {
 }
 
 #[test]
+fn a_soup_of_triangles_turns_its_roots_as_its_surface_does() {
+    let mesh = crate::posed_skin::soup(&even());
+    let radius = 0.1;
+    let rotation = |place: Vec3| Quat::from_rotation_z(-place.x / radius);
+    let bent = |place: Vec3| rotation(place) * (Vec3::Y * (radius + place.y)) - Vec3::Y * radius;
+    let bent = |place: Vec3| Vec3 { z: place.z, ..bent(place) };
+    compare(&moved(&mesh, bent), bent, rotation, ALIKE);
+}
+
+#[test]
 fn thin_triangles_do_not_turn_a_root_over() {
     // Columns in pairs 2 um apart, which numbers of single precision still tell from each other.
     let columns: Vec<f32> =

@@ -53,9 +53,10 @@ pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
             let body = loading.placings.body;
             let skin = moving::skin(scene, motion, mesh, moving::placing(scene, body), &guides)?;
             let parts = std::mem::take(&mut loading.part_motions).into_iter().zip(&loading.part_starts);
-            let skin =
-                moving::with_parts(scene, skin, parts.map(|(motion, start)| (*start).zip(motion)), body)?;
-            notes.extend(moving::open_loop(&skin));
+            let parts: Vec<_> = parts.map(|(motion, start)| (*start).zip(motion)).collect();
+            let moving: Vec<usize> = (0..parts.len()).filter(|part| parts[*part].is_some()).collect();
+            let skin = moving::with_parts(scene, skin, parts.into_iter(), body)?;
+            notes.extend(moving::open_loops(&skin, &moving));
             Some(skin)
         }
         _ => None,

@@ -57,16 +57,20 @@ pub(super) fn with_parts(
     Ok(skin)
 }
 
-/// A note where a motion that begins again ends elsewhere than it begins, without a mark there.
-pub(super) fn open_loop(skin: &SkinMotion) -> Option<String> {
-    let gap = skin.gap_of_loops();
-    (gap > OPEN).then(|| {
+/// A note for each motion that begins again and ends elsewhere than it begins, without a mark there. The parts of these
+/// numbers move by themselves.
+pub(super) fn open_loops(skin: &SkinMotion, parts: &[usize]) -> Vec<String> {
+    let keys =
+        std::iter::once("body".to_owned()).chain(parts.iter().map(|part| format!("body.parts[{part}]")));
+    let open = keys.zip(skin.gaps_of_loops()).filter(|(_, gap)| *gap > OPEN);
+    open.map(|(key, gap)| {
         format!(
-            "body.loop: the motion ends {:.1} cm from where it begins, and hair is pulled over the gap in a step: \
-             a mark at 0 in `teleports` carries it",
+            "{key}.loop: the motion ends {:.1} cm from where it begins, and hair is pulled over the gap in a step: \
+             a mark at 0 in `{key}.teleports` carries it",
             100.0 * gap
         )
     })
+    .collect()
 }
 
 /// The vertices among the first `count` nearest to places of the surface, and those that share a triangle with them, in
@@ -86,4 +90,33 @@ fn about(mesh: &Mesh, count: usize, places: &[Vec3]) -> Vec<u32> {
     }
     let about: Vec<u32> = (0..count as u32).filter(|index| is_about[*index as usize]).collect();
     if about.len() < LEAST { Vec::new() } else { about }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_open_loop_is_told_by_the_key_of_its_own_motion() {
+        let places: Vec<Vec3> =
+            (0..12).map(|index| Vec3::new(index as f32, (index % 3) as f32, 1.0)).collect();
+        let rest = [&places[..], &places, &places].concat();
+        let motion = |way: f32| {
+            let moved = places.iter().map(|place| *place + Vec3::X * way).collect();
+            VertexMotion::sampled(vec![0.0, 1.0], vec![places.clone(), moved]).unwrap()
+        };
+        let rounds = Playback { is_loop: true, ..Playback::default() };
+        let placing = (1.0, Quat::IDENTITY);
+        let told = |ways: [f32; 3], playback| {
+            let body = SkinMotion::new(motion(ways[0]), playback, &rest, placing, &[]).unwrap();
+            let body = body.with_part(12, motion(ways[1]), rounds, placing).unwrap();
+            open_loops(&body.with_part(24, motion(ways[2]), rounds, placing).unwrap(), &[0, 3])
+        };
+        assert!(told([0.0, 0.005, 0.0], rounds).is_empty());
+        assert!(told([1.0, 0.0, 0.0], Playback::default()).is_empty(), "no loop");
+        let notes = told([0.25, 0.0, 0.02], rounds);
+        assert!(notes.len() == 2 && notes[0].starts_with("body.loop: the motion ends 25.0 cm"), "{notes:?}");
+        assert!(notes[1].starts_with("body.parts[3].loop: the motion ends 2.0 cm"), "{notes:?}");
+        assert!(notes[1].ends_with("a mark at 0 in `body.parts[3].teleports` carries it"), "{notes:?}");
+    }
 }

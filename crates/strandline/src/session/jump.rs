@@ -5,6 +5,15 @@ use strandline_base::math;
 
 use crate::body::BodyFrame;
 
+/// A jump of the body, over which hair was carried.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Jump {
+    /// Time of the film, or of the loop that drives the hair, at which the body is elsewhere \[s\].
+    pub time: f64,
+    /// Way and angle, human-readable.
+    pub what: String,
+}
+
 /// Least rotation \[rad\] and way \[m\] of a jump, and the mean speeds \[rad/s\] and \[m/s\] above which they are one: heads
 /// of persons turn by less than 20 rad/s and move at less than 10 m/s.
 const LEAST_TURN: f32 = std::f32::consts::FRAC_PI_3;

@@ -4,6 +4,7 @@
 mod air_hairs;
 mod asking;
 mod bookmark;
+mod carrying;
 mod change;
 mod direction;
 mod draft;
@@ -40,6 +41,7 @@ pub use change::Change;
 pub(crate) use draft::Draft;
 pub use event::Event;
 pub(crate) use job::{Executor, Inline, Live, Task, Weather};
+pub use jump::Jump;
 pub(crate) use kept::Held;
 pub use pick::{Ray, Touched};
 pub(crate) use simulation::Simulation;

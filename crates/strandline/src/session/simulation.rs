@@ -9,7 +9,7 @@ use strandline_gpu::Gpu;
 use super::{
     air_hairs::with_hairs,
     engine::Engine,
-    jump::jump,
+    jump::Jump,
     moment::{Moment, When},
     skin_carrier::SkinCarrier,
 };
@@ -51,6 +51,10 @@ pub(crate) struct Simulation {
     pub skin: SkinCarrier,
     /// Hairs that a guide stands for in the air where the settings do not tell.
     pub hairs: Option<f32>,
+    /// The first jumps of the body.
+    pub jumps: Vec<Jump>,
+    /// True where a note has told of vertices at no place.
+    pub(super) told_held: bool,
     /// Threads of its own beside those that draw, which else keep it waiting for a whole picture.
     pub threads: Option<Pool>,
 }
@@ -70,6 +74,8 @@ impl Simulation {
             hand: None,
             skin: SkinCarrier::default(),
             hairs: None,
+            jumps: Vec::new(),
+            told_held: false,
             threads: None,
         }
     }
@@ -299,7 +305,8 @@ impl Simulation {
         drive: &dyn Fn(f64) -> (BodyFrame, Air),
     ) -> Result<Vec<StepReport>, SimError> {
         let outcome = self.drives(ticks, &span, drive).and_then(|mut drives| {
-            self.carry_over_jumps(&mut drives, span.end - span.start)?;
+            self.note_held(&drives, ticks.first);
+            self.carry_over_jumps(&mut drives, ticks.first, &span)?;
             let reports = self.engine.run(&drives)?;
             Ok((drives, reports))
         });
@@ -316,22 +323,6 @@ impl Simulation {
         self.end = self.skin.placed(drive(span.end).0, &self.bodies[1]);
         self.passed += span.end - span.start;
         Ok(reports)
-    }
-
-    /// Carries the hair to where a jump leads within these drives, which are `seconds` of the run: a run with a jump is
-    /// made where the body ends.
-    fn carry_over_jumps(&mut self, drives: &mut [Drive], seconds: f64) -> Result<(), SimError> {
-        let Some(end) = drives.last().map(|drive| drive.body.clone()) else { return Ok(()) };
-        let (step, root) = (self.time_step(), self.engine.model().first_root());
-        let here = &self.bodies[1];
-        let before = std::iter::once(here).chain(drives.iter().map(|drive| &drive.body));
-        let found = before.zip(&*drives).find_map(|(before, drive)| jump(before, &drive.body, root, step));
-        let Some(note) = found.or_else(|| jump(here, &end, root, seconds.max(step))) else { return Ok(()) };
-        self.engine.carry(&end)?;
-        self.engine.notes.push(note);
-        self.bodies = [end.clone(), end.clone()];
-        drives.iter_mut().for_each(|drive| drive.body = end.clone());
-        Ok(())
     }
 
     /// Drives of the hair for each due step, sampled at the end of the step.

@@ -2,6 +2,7 @@
 #![allow(clippy::disallowed_methods)] // what is held to others may be rounded
 
 mod solids;
+mod told;
 
 use std::path::{Path, PathBuf};
 
@@ -364,31 +365,6 @@ fn hair_is_carried_over_marks_of_a_part_and_of_a_joint() {
         let jumps = notes.iter().filter(|note| note.contains("as marked: hair is carried")).count();
         assert_eq!(jumps, 1, "{notes:?}");
     }
-}
-
-#[test]
-fn a_loop_that_does_not_close_is_told() {
-    let notes = |change: fn(&mut Scene)| {
-        let mut loops = scene("nod");
-        loops.body.r#loop = true;
-        change(&mut loops);
-        Prepared::new(&loops).unwrap().notes.join("\n")
-    };
-    assert!(!notes(|_| {}).contains("body.loop"), "the clip ends where it begins");
-    let folder = tempfile::tempdir().unwrap();
-    let mesh = Mesh::load(&bust(), 1.0).unwrap();
-    for frame in 0..3 {
-        write_obj(&folder.path().join(format!("walk{frame:04}.obj")), &mesh, 0.1 * frame as f32);
-    }
-    let mut walks = scene("nod");
-    (walks.body.clip, walks.body.file, walks.body.r#loop) =
-        (None, Some(folder.path().join("walk%04d.obj")), true);
-    walks.body.scale = strandline::format::Scale::Factor(1.0);
-    let open = Prepared::new(&walks).unwrap().notes.join("\n");
-    assert!(open.contains("body.loop: the motion ends 20.0 cm from where it begins"), "{open}");
-    walks.body.teleports = vec![TeleportSection { time: 0.0 }];
-    let marked = Prepared::new(&walks).unwrap().notes.join("\n");
-    assert!(!marked.contains("body.loop"), "{marked}");
 }
 
 #[test]

@@ -5,9 +5,11 @@ mod deep;
 
 use std::path::PathBuf;
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use strandline_base::Random;
-use strandline_body::{BodyError, Mesh, VertexMotion};
+use strandline_body::{
+    BodyError, BodyFrame, Mesh, Playback, RecordedMotion, SkinMotion, SkinRoots, VertexMotion,
+};
 
 use crate::files::{cube_bin, cube_json, glb, scratch};
 
@@ -150,6 +152,55 @@ fn mutated(json: &str, random: &mut Random) -> String {
     format!("{}{number}{}", &json[..at], &json[end..])
 }
 
+/// A head, a skin and roots on it are somewhere at any time.
+fn rides(mesh: &Mesh, motion: VertexMotion) {
+    let places = &mesh.positions;
+    let body = SkinMotion::new(motion, Playback::default(), places, (1.0, Quat::IDENTITY), &[]).unwrap();
+    let roots = SkinRoots::new(mesh, &[places[0], places[7] + 0.01]);
+    let mut last = BodyFrame::REST;
+    for time in [0.4, 1.9, 1e300] {
+        last = roots.placed(body.frame(time), &last);
+        last.check(Some(2), Some(places.len())).unwrap();
+    }
+}
+
+/// A thousand damaged skeletons of .bvh: each is refused, or its joint is somewhere.
+#[test]
+fn damaged_skeletons_are_refused_or_played() {
+    const ARM: &str = "HIERARCHY ROOT Hips { OFFSET 0 0 0 CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation \
+                       Yrotation JOINT Head { OFFSET 0 10 0 CHANNELS 3 Zrotation Xrotation Yrotation End Site { OFFSET 0 \
+                       5 0 } } } MOTION Frames: 2 Frame Time: 0.5 1 90 2 0 0 0 0 0 0 1 95 2 90 0 0 0 0 90";
+    let others =
+        ["0", "-1", "7", "1e308", "-1e308", "nan", "18446744073709551615", "{", "}", "JOINT", "MOTION", ""];
+    let mut random = Random::new(35, 2);
+    let (mut refused, mut played) = (0, 0);
+    for _ in 0..1000 {
+        let mut words: Vec<&str> = ARM.split(' ').collect();
+        for _ in 0..=below(&mut random, 2) {
+            let at = below(&mut random, words.len());
+            words[at] = others[below(&mut random, others.len())];
+        }
+        match RecordedMotion::from_bvh(words.join(" ").as_bytes(), "Head", 0.01) {
+            Err(error) => {
+                assert!(error.to_string().contains("expected"), "{error}");
+                refused += 1;
+            }
+            Ok(motion) => {
+                for time in [-1.0, 0.3, 9.0, f64::NAN, 1e300] {
+                    let pose = motion.pose(time, Vec3::Y);
+                    assert!(
+                        BodyFrame::from(pose).check(None, None).is_ok(),
+                        "{pose:?} of {}",
+                        words.join(" ")
+                    );
+                }
+                played += 1;
+            }
+        }
+    }
+    assert!(refused > 300 && played > 100, "{refused} refused, {played} played");
+}
+
 /// A thousand damaged rigs: each is refused, or all its vertices are somewhere.
 #[test]
 fn damaged_clips_are_refused_or_drawn() {
@@ -179,6 +230,7 @@ fn damaged_clips_are_refused_or_drawn() {
                     for time in [-1.0, 0.4, 0.5, 1.9, f64::NAN, 1e300] {
                         assert_eq!(motion.positions(time).len(), mesh.positions.len());
                     }
+                    rides(&mesh, motion);
                     drawn += 1;
                 }
             }

@@ -1,0 +1,65 @@
+//! Odd motions, and what is said of them.
+
+use super::*;
+use strandline::Jump;
+
+/// The bust in memory, 0.3 m aside from 0.2 s on, with one vertex of its chest far beyond all places.
+fn aside() -> (Scene, Sources) {
+    let mesh = Mesh::load(&bust(), 1.0).unwrap();
+    let mut beside: Vec<Vec3> = mesh.positions.iter().map(|place| *place + Vec3::X * 0.3).collect();
+    let height = |vertex: &usize| mesh.positions[*vertex].y;
+    let lowest = (0..beside.len()).min_by(|one, other| height(one).total_cmp(&height(other))).unwrap();
+    beside[lowest] = Vec3::splat(1e9);
+    let motion = VertexMotion::sampled(vec![0.1, 0.2], vec![mesh.positions.clone(), beside]).unwrap();
+    let mut memory = scene("nod");
+    (memory.body.file, memory.body.clip) = (Some("bust".into()), None);
+    memory.body.teleports = vec![TeleportSection { time: 0.2 }];
+    memory.film.frames = 16;
+    (memory, Sources::default().with_mesh("bust", mesh).with_motion("bust", motion))
+}
+
+#[test]
+fn jumps_are_listed_and_vertices_at_no_place_are_told_once() {
+    let (scene, sources) = aside();
+    let mut player = Player::from_sources(&scene, &sources, scene.devices, false).unwrap();
+    let mut notes = Vec::new();
+    while let Some(event) = player.next() {
+        if let Event::Note(note) = event.unwrap() {
+            notes.push(note);
+        }
+    }
+    let held: Vec<_> = notes.iter().filter(|note| note.contains("at no finite place")).collect();
+    assert_eq!(
+        held,
+        ["1 vertex of the body is at no finite place within 1,000 km at 0.20 s: held as at rest"]
+    );
+    let jumps = player.jumps();
+    let [Jump { time, what }] = &jumps[..] else { panic!("one jump: {jumps:?}") };
+    assert!((time - 0.2).abs() < 0.009, "{time}");
+    assert!(what.contains("jumps by 0.30 m and 0 degrees, as marked"), "{what}");
+}
+
+#[test]
+fn a_loop_that_does_not_close_is_told() {
+    let notes = |change: fn(&mut Scene)| {
+        let mut loops = scene("nod");
+        loops.body.r#loop = true;
+        change(&mut loops);
+        Prepared::new(&loops).unwrap().notes.join("\n")
+    };
+    assert!(!notes(|_| {}).contains("body.loop"), "the clip ends where it begins");
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = Mesh::load(&bust(), 1.0).unwrap();
+    for frame in 0..3 {
+        write_obj(&folder.path().join(format!("walk{frame:04}.obj")), &mesh, 0.1 * frame as f32);
+    }
+    let mut walks = scene("nod");
+    (walks.body.clip, walks.body.file, walks.body.r#loop) =
+        (None, Some(folder.path().join("walk%04d.obj")), true);
+    walks.body.scale = strandline::format::Scale::Factor(1.0);
+    let open = Prepared::new(&walks).unwrap().notes.join("\n");
+    assert!(open.contains("body.loop: the motion ends 20.0 cm from where it begins"), "{open}");
+    walks.body.teleports = vec![TeleportSection { time: 0.0 }];
+    let marked = Prepared::new(&walks).unwrap().notes.join("\n");
+    assert!(!marked.contains("body.loop"), "{marked}");
+}
