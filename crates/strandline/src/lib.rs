@@ -36,6 +36,8 @@ mod snapshot;
 mod strands;
 
 pub mod low_level;
+#[cfg(feature = "gpu")]
+pub mod measure;
 pub mod scene;
 
 /// Settings as data, and the sections of `[simulation]` and `[style]`. [`settings::Group::TABLE`] lists the settings of a
