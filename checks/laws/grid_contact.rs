@@ -131,8 +131,8 @@ law! {
 
 law! {
     fn the_report_sees_hair_that_is_taut_through_a_solid(on) {
-        // Held at both ends, which the head carries past a small ball: nothing can give way. What the contacts
-        // remember of the ball was looked up millimetres away.
+        // Held at both ends, which the head carries past a small ball: nothing can give way. The contacts
+        // looked up the ball millimetres away.
         let ball = Ball { center: Vec3::NEG_Y * 0.3, radius: 0.02 };
         let hair = one_strand(&line(Vec3::NEG_X * 0.1, Vec3::X * 0.1, 15));
         let rest = RestShape::new(&hair, 6.5e-6);

@@ -5,7 +5,6 @@ mod angles;
 mod attributes;
 mod bound;
 mod bundles;
-mod cells;
 mod contact;
 mod curl;
 mod free_strand;

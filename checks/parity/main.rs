@@ -1,7 +1,6 @@
 //! Every stage of the GPU backend against its twin in plain Rust.
 
 mod bound;
-mod cells;
 mod channels;
 mod chiang;
 mod depth;

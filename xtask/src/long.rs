@@ -42,6 +42,9 @@ const TESTS: [((&str, &str), [&str; 2]); 18] = [
     (("STRANDLINE_FULL", "1"), ["laws", "rod_styles::"]),
 ];
 
+/// The browser page, which the workflow `ci` tests at each push.
+const WEB: &str = "web";
+
 /// Contents of bench/long.json: the day in UTC, as `2026-11-25`, on which each check last passed.
 #[derive(Debug, Default, Deserialize, Serialize)]
 struct Record(BTreeMap<String, String>);
@@ -64,7 +67,12 @@ fn checks() -> Vec<Check> {
     first
         .into_iter()
         .chain(TESTS.map(test))
-        .chain([own("python", python::long), own("web", web::long)])
+        .chain([
+            own("python cluster", python::long_cluster),
+            own("python guide", python::long_guide),
+            own("python blender", python::long_blender),
+            own(WEB, web::long),
+        ])
         .collect()
 }
 
@@ -163,6 +171,29 @@ mod tests {
         let record = Record([("bare".to_owned(), "2026-11-25".to_owned())].into());
         let names = ["bare".to_owned(), "web".to_owned()];
         assert!(line(&names, &record).ends_with("last passed: bare: 2026-11-25, web: never"));
+    }
+
+    /// Words of the jobs of the weekly workflow.
+    fn words(workflow: &str) -> Vec<&str> {
+        let lists = workflow.lines().filter_map(|line| line.trim().strip_prefix("words: '"));
+        lists.flat_map(|list| list.split('"').skip(1).step_by(2)).collect()
+    }
+
+    #[test]
+    fn each_check_but_the_page_has_a_job_of_the_weekly_workflow() {
+        let workflow = std::fs::read_to_string(root().join(".github/workflows/long.yml")).unwrap();
+        let words = words(&workflow);
+        let names: Vec<String> = checks().into_iter().map(|(name, _)| name).collect();
+        for word in &words {
+            assert!(names.iter().any(|name| name.contains(word)), "no long check is called {word}");
+        }
+        for name in &names {
+            let jobs = words.iter().filter(|word| name.contains(**word)).count();
+            assert_eq!(jobs, usize::from(name != WEB), "{name}");
+        }
+        // GitHub ends a job after six hours.
+        let minutes = workflow.lines().filter_map(|line| line.trim().strip_prefix("minutes: "));
+        assert!(minutes.map(|minutes| minutes.parse::<u32>().unwrap()).all(|minutes| minutes <= 350));
     }
 
     #[test]

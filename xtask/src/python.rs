@@ -38,7 +38,8 @@ const PACKAGES: [&str; 8] = [
 /// every page of the guide is run, else the short ones.
 const JOBS: (&str, &str) = ("STRANDLINE_JOBS", "64");
 /// Tests that have a long form.
-const LONG: [&str; 2] = ["python/tests/test_cluster.py", "python/tests/test_guide.py"];
+const CLUSTER_TESTS: &str = "python/tests/test_cluster.py";
+const GUIDE_TESTS: &str = "python/tests/test_guide.py";
 
 /// Options of pytest in the long form: a test may take an hour.
 const AN_HOUR_EACH: (&str, &str) = ("PYTEST_ADDOPTS", "-o faulthandler_timeout=3600");
@@ -100,7 +101,7 @@ fn interpreter(environment: &str) -> String {
     root().join("target").join(environment).join(own).to_string_lossy().into_owned()
 }
 
-/// Makes an environment in the target folder and begins to install packages there. What is imported is compiled then.
+/// Makes an environment in the target folder and begins to install packages there. Modules are compiled when they are imported.
 fn begin(environment: &str, packages: &[&str]) -> Option<Child> {
     let folder = root().join("target").join(environment);
     let made = run("python3", &["-m", "venv", &folder.to_string_lossy()]);
@@ -161,26 +162,34 @@ pub fn test() -> bool {
     passes(&python, &ALL, &[], programs::LONGEST)
 }
 
-/// Runs the long form of the package's tests, and with Blender where it can be had. True if all
-/// of it passed.
-pub fn long() -> bool {
-    let blender = blender();
-    let (mut tests, mut environment) = (LONG.to_vec(), vec![JOBS, AN_HOUR_EACH]);
-    match &blender {
-        Some(python) => {
-            tests.push(BLENDER_TESTS);
-            environment.push((BLENDER, python));
-        }
-        None => println!(
+/// Runs the long form of the tests of sweeps on a cluster. True if all of it passed.
+pub fn long_cluster() -> bool {
+    long(CLUSTER_TESTS, &[JOBS])
+}
+
+/// Runs all pages of the guide. True if all of it passed.
+pub fn long_guide() -> bool {
+    long(GUIDE_TESTS, &[JOBS])
+}
+
+/// Has Blender read what is written for it. True if all of it passed; false where Blender cannot be had.
+pub fn long_blender() -> bool {
+    let Some(python) = blender() else {
+        println!(
             "Blender read nothing of ours: `pip install {BLENDER_PACKAGE}` has it for Python 3.11 alone ({BLENDER} \
              names a Python that has it)"
-        ),
-    }
-    let python = prepare(true);
-    if python.is_none() {
+        );
+        return false;
+    };
+    long(BLENDER_TESTS, &[(BLENDER, &*python)])
+}
+
+fn long(tests: &str, environment: &[(&str, &str)]) -> bool {
+    let Some(python) = prepare(true) else {
         println!("the long tests of the Python package did not run: {NONE}");
-    }
-    python.is_some_and(|python| passes(&python, &tests, &environment, LONG_FORM))
+        return false;
+    };
+    passes(&python, &[tests], &[environment, &[AN_HOUR_EACH]].concat(), LONG_FORM)
 }
 
 /// Writes the sections of a scene of the Python package from the settings table; false if that fails, true without a

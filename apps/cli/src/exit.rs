@@ -1,6 +1,5 @@
 //! The end of the program, and the codes that it ends with; docs/limits.md lists them.
 
-use signal_hook::low_level;
 use strandline::file::abandon_unfinished;
 
 /// Everything was done.
@@ -20,7 +19,7 @@ pub const SIGNAL: i32 = 128;
 pub fn end_now(code: i32) -> ! {
     let _abandoned = abandon_unfinished();
     // No other code runs any more, such as destructors of a driver beside its threads.
-    low_level::exit(code)
+    signal_hook::low_level::exit(code)
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@
 #![cfg_attr(test, allow(clippy::disallowed_methods))] // tests may use inexact math
 
 pub mod cache;
+mod file_problem;
 mod folder_lock;
 mod growing_file;
 mod invalidates;
@@ -31,6 +32,7 @@ mod text;
 pub mod vec3x8;
 mod whole_file;
 
+pub use file_problem::FileProblem;
 pub use folder_lock::FolderLock;
 pub use growing_file::{GrowingFile, refuse_busy};
 pub use invalidates::Invalidates;

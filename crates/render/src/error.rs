@@ -1,6 +1,7 @@
+use std::io::ErrorKind;
 use std::path::PathBuf;
 
-use strandline_base::SettingError;
+use strandline_base::{FileProblem, SettingError};
 
 /// Why a picture could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -42,18 +43,18 @@ pub enum RenderError {
     #[error(transparent)]
     Gpu(#[from] strandline_gpu::GpuError),
     /// A picture of the surroundings could not be read.
-    #[error("cannot read the surroundings: {reason}: {}", path.display())]
+    #[error("cannot read the surroundings: {problem}: {}", path.display())]
     Surroundings {
-        /// Content found and content expected.
-        reason: String,
+        /// The problem.
+        problem: FileProblem,
         /// The file.
         path: PathBuf,
     },
     /// A picture could not be written.
-    #[error("cannot write the picture: {reason}: {}", path.display())]
+    #[error("cannot write the picture: {}: {}", remedy(source), path.display())]
     Save {
-        /// Error and remedy.
-        reason: String,
+        /// The system's error.
+        source: std::io::Error,
         /// Path of the file.
         path: PathBuf,
     },
@@ -63,5 +64,33 @@ impl RenderError {
     /// True for errors of the GPU, which the CPU may avoid.
     pub fn is_of_gpu(&self) -> bool {
         matches!(self, Self::Gpu(_) | Self::TooMany { .. })
+    }
+}
+
+/// Error of writing a file, with its remedy, human-readable.
+fn remedy(error: &std::io::Error) -> String {
+    match error.kind() {
+        ErrorKind::NotFound => "the folder does not exist, create it first".into(),
+        ErrorKind::PermissionDenied => "no permission to write there, choose another folder".into(),
+        ErrorKind::NotADirectory => "its folder is a file, choose another folder".into(),
+        ErrorKind::StorageFull => "the disk is full, make room or choose another folder".into(),
+        ErrorKind::ReadOnlyFilesystem => "the disk is read-only, choose another folder".into(),
+        _ => error.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_full_disk_is_reported_with_its_remedy_and_keeps_its_kind() {
+        let error = RenderError::Save { source: ErrorKind::StorageFull.into(), path: "a.png".into() };
+        assert_eq!(
+            error.to_string(),
+            "cannot write the picture: the disk is full, make room or choose another folder: a.png"
+        );
+        let RenderError::Save { source, .. } = error else { panic!("{error}") };
+        assert_eq!(source.kind(), ErrorKind::StorageFull);
     }
 }

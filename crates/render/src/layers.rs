@@ -1,6 +1,6 @@
 //! Linear light and what else is known of each pixel, as channels of an OpenEXR file.
 
-use std::io::{Cursor, Write};
+use std::io::Cursor;
 use std::path::Path;
 
 use exr::prelude::{
@@ -9,7 +9,6 @@ use exr::prelude::{
 use strandline_base::WholeFile;
 
 use crate::RenderError;
-use crate::picture::reason;
 
 /// Channels of a picture, rows from the top.
 ///
@@ -55,10 +54,9 @@ impl Layers {
     /// [`RenderError::Save`], as for [`Picture::save`](crate::Picture::save).
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), RenderError> {
         let path = path.as_ref();
-        let failed = |reason: String| RenderError::Save { reason, path: path.to_path_buf() };
-        let bytes = self.encode().map_err(failed)?;
-        WholeFile::write(path, |file| file.write_all(&bytes))
-            .and_then(WholeFile::keep)
-            .map_err(|error| failed(reason(&error)))
+        let bytes = self.encode().map_err(std::io::Error::other);
+        bytes
+            .and_then(|bytes| WholeFile::save(path, &bytes))
+            .map_err(|source| RenderError::Save { source, path: path.to_path_buf() })
     }
 }

@@ -1,4 +1,4 @@
-use std::io::{ErrorKind, Write};
+use std::io::Write;
 use std::path::Path;
 
 use image::codecs::png::PngEncoder;
@@ -38,7 +38,7 @@ impl Picture {
         let path = path.as_ref();
         WholeFile::write(path, |file| self.encode(file))
             .and_then(WholeFile::keep)
-            .map_err(|error| RenderError::Save { reason: reason(&error), path: path.to_path_buf() })
+            .map_err(|source| RenderError::Save { source, path: path.to_path_buf() })
     }
 
     /// Writes the picture as PNG to `sink`.
@@ -64,18 +64,6 @@ impl Picture {
         let opacity = |pixel: usize| self.alpha.as_ref().map_or(255, |alpha| alpha[pixel]);
         let (colors, _) = self.pixels.as_chunks::<3>();
         colors.iter().enumerate().flat_map(|(pixel, &[r, g, b])| [r, g, b, opacity(pixel)]).collect()
-    }
-}
-
-/// Error of writing a file, and its remedy.
-pub(crate) fn reason(error: &std::io::Error) -> String {
-    match error.kind() {
-        ErrorKind::NotFound => "the folder does not exist, create it first".into(),
-        ErrorKind::PermissionDenied => "no permission to write there, choose another folder".into(),
-        ErrorKind::NotADirectory => "its folder is a file, choose another folder".into(),
-        ErrorKind::StorageFull => "the disk is full, make room or choose another folder".into(),
-        ErrorKind::ReadOnlyFilesystem => "the disk is read-only, choose another folder".into(),
-        _ => error.to_string(),
     }
 }
 
@@ -122,10 +110,5 @@ mod tests {
         std::fs::write(&file, b"x").unwrap();
         let message = gradient(false).save(file.join("picture.png")).unwrap_err().to_string();
         assert!(message.contains("its folder is a file"), "{message}");
-    }
-
-    #[test]
-    fn a_full_disk_is_reported_with_its_remedy() {
-        assert!(reason(&ErrorKind::StorageFull.into()).contains("disk is full"));
     }
 }

@@ -78,7 +78,7 @@ fn last_held(inverse_mass: &[Lanes]) -> [usize; LANES] {
 }
 
 /// Gives the strands of a block their share of the length at rest: the last segments change first, as far
-/// as they may, and those near the root stay. What lies between a root and a tie stays too, since neither end can move.
+/// as they may, and those near the root stay. Segments between a root and a tie stay too, since neither end can move.
 fn scale_block(
     rest: &RestShape,
     lengths: &mut RestShape,

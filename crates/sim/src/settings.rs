@@ -3,7 +3,6 @@ use strandline_base::{Group, Invalidates, Row, SettingError, Value, choices, set
 use strandline_gpu::Backend;
 
 use crate::SimError;
-use crate::cells::Lattice;
 use crate::strands::constrain::settings::{Angles, ConstrainSettings, LengthPass, Springs};
 use crate::strands::rods::settings::{GroupSettings, Rest, RodSettings};
 use crate::wisps::settings::ContactSettings;
@@ -38,11 +37,6 @@ settings! {
         contact: ContactSettings = ContactSettings::default();
         /// The fluid volume.
         volume: VolumeSettings = VolumeSettings::default();
-        plain {
-            /// Edge of the cells \[m\] by which the stage `cells` sorts points, 1e-4 to 100, for stages that look for
-            /// neighbours; `None` leaves the stage out.
-            cells: Option<f32>,
-        }
         moved {
             backend: Backend => "devices.simulation",
             iterations: u32 => "simulation.strands.constrain.iterations",
@@ -130,8 +124,7 @@ impl Settings {
     /// # Errors
     /// The first setting that does not.
     pub fn check(&self) -> Result<(), SimError> {
-        self.check_as("simulation")?;
-        Ok(self.cells.map_or(Ok(()), Lattice::check)?)
+        Ok(self.check_as("simulation")?)
     }
 }
 

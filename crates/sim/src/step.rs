@@ -36,8 +36,6 @@ macro_rules! stages {
 stages! {
     /// Roots follow the skin.
     PoseRoots = "pose_roots", always;
-    /// Points sorted by cell, by their positions alone, for stages that look for neighbours.
-    Cells = "cells", neighbours;
     /// Air at the points, behind hair and solids.
     Shelter = "shelter", sheltered;
     /// Forces, then a prediction.
@@ -60,10 +58,6 @@ stages! {
 
 fn always(_: &Settings) -> bool {
     true
-}
-
-fn neighbours(settings: &Settings) -> bool {
-    settings.cells.is_some()
 }
 
 fn sheltered(settings: &Settings) -> bool {

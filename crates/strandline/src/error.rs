@@ -1,6 +1,6 @@
 use std::path::{Path, PathBuf};
 
-use strandline_base::{SettingError, memory::MemoryError};
+use strandline_base::{FileProblem, SettingError, memory::MemoryError};
 use strandline_gpu::GpuError;
 
 use crate::{body::BodyError, groom::GroomError, render::RenderError, sim::SimError};
@@ -138,30 +138,6 @@ pub enum Error {
     /// From a GPU that was opened or asked to copy points.
     #[error(transparent)]
     Gpu(#[from] GpuError),
-}
-
-/// Problem of a file.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum FileProblem {
-    /// The system cannot read it.
-    #[error(transparent)]
-    Read(#[from] std::io::Error),
-    /// Its content is not as expected: what was found and what was expected.
-    #[error("{0}")]
-    Content(String),
-}
-
-impl From<String> for FileProblem {
-    fn from(found: String) -> Self {
-        Self::Content(found)
-    }
-}
-
-impl From<&str> for FileProblem {
-    fn from(found: &str) -> Self {
-        Self::Content(found.to_owned())
-    }
 }
 
 /// Kind of an error, by what a program may do about it.

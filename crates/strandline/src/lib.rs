@@ -32,9 +32,12 @@ pub mod live;
 mod player;
 mod prepare;
 mod session;
+mod snapshot;
 mod strands;
 
 pub mod low_level;
+#[cfg(feature = "gpu")]
+pub mod measure;
 pub mod scene;
 
 /// Settings as data, and the sections of `[simulation]` and `[style]`. [`settings::Group::TABLE`] lists the settings of a
@@ -78,9 +81,8 @@ pub mod device {
 
 /// Files of pictures and films, files that are whole or not there, their problems, and text of files for terminals.
 pub mod file {
-    pub use strandline_base::{WholeFile, abandon_unfinished, counted, printable, read_plain};
+    pub use strandline_base::{FileProblem, WholeFile, abandon_unfinished, counted, printable, read_plain};
 
-    pub use crate::error::FileProblem;
     pub use crate::film::{Film, FilmFiles, PictureFiles};
 }
 

@@ -1,5 +1,5 @@
-//! Everything beneath the names of the crate: its parts, and the crates below it. They serve the program, the window,
-//! checks and benches; they may change with any version.
+//! Everything beneath the names of the crate: its parts, and the crates below it. They serve the
+//! checks and the Python package; they may change with any version.
 
 pub use strandline_base as base;
 pub use strandline_body as body;
@@ -11,7 +11,7 @@ pub use strandline_sim as sim;
 pub use crate::body::Motion;
 pub use crate::cache::check_cache;
 pub use crate::prepare::read_map;
+pub use crate::snapshot::files::check_pose;
 pub use crate::strands::attributes::check_attributes;
 pub use crate::strands::bound::BoundStrands;
-pub use crate::strands::hair_pose::check_pose;
 pub use crate::strands::tags::Tags;

@@ -89,6 +89,15 @@ impl Modules {
         wrong.map(|(path, _)| self.files[path].file.as_str()).collect()
     }
 
+    /// The files outside some folders that import from one of them, by name, each with that folder. Names that the root
+    /// of the crate gives on count as the folder's.
+    pub fn from_outside(&self, folders: &[&str]) -> BTreeSet<(&str, String)> {
+        let is_in =
+            |path: &[String]| folders.iter().any(|folder| path.first().is_some_and(|first| first == folder));
+        let wrong = self.edges().filter(|(path, target)| !path.is_empty() && !is_in(path) && is_in(target));
+        wrong.map(|(path, target)| (self.files[path].file.as_str(), target[0].clone())).collect()
+    }
+
     /// Each import of a module from another, as their paths.
     fn edges(&self) -> impl Iterator<Item = (&[String], &[String])> {
         self.files.iter().flat_map(move |(path, module)| {

@@ -49,6 +49,13 @@ const ARROWS: [(&str, &[&str]); 11] = [
 const APART: [(&str, &str, &str); 2] =
     [("crates/render/src", "gpu", "cpu"), ("crates/sim/src", "gpu", "cpu")];
 
+/// Folders of backends, from which only the root of the crate imports, to give names on. A simulator of `sim` joins its
+/// backends itself.
+const BACKENDS: [(&str, &[&str]); 1] = [("crates/render/src", &["cpu", "gpu"])];
+
+/// Programs that name nothing of the facade but its own modules: what they need, every program may.
+const PROGRAMS: [&str; 4] = ["apps/cli/src", "apps/viewer/src", "apps/web/src", "examples"];
+
 /// Exceptions of the list: lines by file, lines by function, circles of files and circles of folders.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -140,8 +147,13 @@ impl Found {
             if lines > most {
                 self.files.insert(name.clone(), lines);
             }
-            for (function, lines) in sizes::long_functions(&text::blanked(code), LONGEST_FUNCTION) {
+            let code = text::blanked(code);
+            for (function, lines) in sizes::long_functions(&code, LONGEST_FUNCTION) {
                 self.functions.insert(format!("{name} {function}"), lines);
+            }
+            if PROGRAMS.contains(&folder) && tunnels(&code) {
+                self.arrows
+                    .push(format!("{name} needs `low_level`, expected the facade's own modules alone"));
             }
         }
     }
@@ -156,7 +168,16 @@ impl Found {
             let wrong = modules.between(one, other);
             self.arrows.extend(wrong.iter().map(|file| format!("{folder}/{file} imports from {other}/")));
         }
+        for (_, backends) in BACKENDS.iter().filter(|(place, _)| *place == folder) {
+            let wrong = modules.from_outside(backends).into_iter();
+            self.arrows.extend(wrong.map(|(file, other)| format!("{folder}/{file} imports from {other}/")));
+        }
     }
+}
+
+/// True for blanked code that names `low_level` of the facade.
+fn tunnels(code: &str) -> bool {
+    code.match_indices("low_level").any(|(at, _)| !code[..at].ends_with("signal_hook::"))
 }
 
 /// Entries of a folder, by name.
@@ -241,6 +262,50 @@ mod tests {
         let manifest = "[dependencies]\nglam = \"1\"\nstrandline-sim.workspace = true\n";
         assert_eq!(wrong_arrows("a", manifest, &["strandline-base"]).unwrap().len(), 1);
         assert!(wrong_arrows("a", manifest, &["strandline-sim"]).unwrap().is_empty());
+    }
+
+    #[test]
+    fn files_beside_the_backends_of_render_import_none_of_them() {
+        let planted = [
+            ("lib.rs", "mod cpu;\nmod gpu;\nmod growth;\nmod look;\nmod room;\npub use cpu::step::Step;"),
+            ("cpu/mod.rs", "pub mod step;"),
+            ("cpu/step.rs", "use crate::look::Look;\npub struct Step;"),
+            ("gpu/mod.rs", "use crate::look::Look;\npub struct Kernel;"),
+            ("growth.rs", "use crate::cpu::step::Step;"),
+            ("look.rs", "pub struct Look;\n#[cfg(test)]\nmod tests {\n    use crate::cpu::step::Step;\n}"),
+            ("room/mod.rs", "mod given_on;\nfn f() { crate::gpu::Kernel }"),
+            ("room/given_on.rs", "use crate::Step;"),
+        ];
+        let wrong = |folder: &str| {
+            let mut found = Found::default();
+            let files = planted.map(|(file, code)| (file.to_owned(), code.to_owned()));
+            found.find_circles(folder, files.to_vec());
+            found.arrows
+        };
+        let expected = [
+            "growth.rs imports from cpu/",
+            "room/given_on.rs imports from cpu/",
+            "room/mod.rs imports from gpu/",
+        ];
+        assert_eq!(
+            wrong("crates/render/src"),
+            expected.map(|problem| format!("crates/render/src/{problem}"))
+        );
+        // A simulator joins its backends itself.
+        assert!(wrong("crates/sim/src").is_empty());
+    }
+
+    #[test]
+    fn programs_name_nothing_beneath_the_facade() {
+        assert!(tunnels("use strandline::low_level::sim::Drive;"));
+        assert!(tunnels("use strandline::{Scene, low_level::sim};"));
+        assert!(!tunnels("signal_hook::low_level::exit(1)"));
+        let mut found = Found::default();
+        let file = ("bench/forms.rs".to_owned(), "use strandline::low_level::sim;".to_owned());
+        found.measure("apps/cli/src", &[file.clone()]);
+        assert!(found.arrows.len() == 1 && found.arrows[0].starts_with("apps/cli/src/bench/forms.rs"));
+        found.measure("checks/laws", &[file]);
+        assert_eq!(found.arrows.len(), 1);
     }
 
     #[test]

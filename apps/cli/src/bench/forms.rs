@@ -1,6 +1,6 @@
 //! One thread per strand against one per point: the rounds of lengths alone [Chen2011 fig. 16-17].
 
-use strandline::low_level::sim::gpu::{LengthsForm, LengthsInput, lengths_alone};
+use strandline::measure::{LengthsForm, LengthsInput, lengths_alone};
 
 use super::gpu::{Device, Forms};
 use crate::output::print_line;

@@ -4,10 +4,7 @@ use std::time::{Duration, Instant};
 
 use strandline::{
     Prepared, Scene, SimError,
-    low_level::sim::{
-        Drive, Model,
-        gpu::{GpuRunner, Gradient},
-    },
+    measure::{GpuFilm, Gradient},
 };
 
 use super::gpu::{Device, GpuRun, GradientTimes};
@@ -21,14 +18,14 @@ const WARM_UP: Duration = Duration::from_millis(500);
 
 impl GradientTimes {
     /// After the last step, whose markers and pressure it takes.
-    fn measured(runner: &GpuRunner, software: bool) -> anyhow::Result<Option<Self>> {
+    fn measured(film: &GpuFilm, software: bool) -> anyhow::Result<Option<Self>> {
         const ROWS: usize = 5;
         let in_a_row = if software { 8 } else { 64 };
         // Both in turn, so that other load falls on both.
         let mut best = [f64::INFINITY; 2];
         for _ in 0..ROWS {
             for (best, gradient) in best.iter_mut().zip([Gradient::Joint, Gradient::Split]) {
-                match runner.seconds_of_gradient(gradient, in_a_row)? {
+                match film.seconds_of_gradient(gradient, in_a_row)? {
                     Some(seconds) => *best = best.min(1e6 * seconds),
                     None => return Ok(None),
                 }
@@ -42,36 +39,30 @@ impl GradientTimes {
 impl Device {
     /// The first steps compile and allocate, and a device at rest lowers its clock: on an H200 the step of the thesis's scene
     /// took 3.5 ms without these, 0.7 ms with them.
-    fn warm_up(&self, runner: &mut GpuRunner) -> anyhow::Result<()> {
+    fn warm_up(&self, film: &mut GpuFilm) -> Result<(), SimError> {
         let begin = Instant::now();
-        run(runner, 2, |_| Drive::default())?;
+        film.run_at_rest(2)?;
         while !self.adapter.software && begin.elapsed() < WARM_UP {
-            run(runner, QUEUED, |_| Drive::default())?;
+            film.run_at_rest(QUEUED)?;
         }
         Ok(())
     }
 
     /// Plays a scene without pictures.
     pub fn measure(&self, scene: &Scene, what: &'static str) -> anyhow::Result<GpuRun> {
-        let Prepared { guides, colliders, head, placement, .. } = Prepared::new(scene)?;
-        let model = Model::new(&guides, &scene.simulation, colliders)?;
-        let begun = model.rest_state(head.pose(0.0));
-        let mut runner = GpuRunner::new(&self.gpu, model)?;
-        runner.write(&begun)?;
+        let prepared = Prepared::new(scene)?;
+        let placement = prepared.placement;
+        let mut film = GpuFilm::new(&self.gpu, prepared)?;
         let mut steps = Steps::default();
         let count = scene.film.frames as usize;
         let mut progress = Progress::new(count as u64, what, false);
-        self.warm_up(&mut runner)?;
-        runner.write(&begun)?;
+        self.warm_up(&mut film)?;
+        film.begin()?;
         let mut wall = 0.0;
         for first in (0..count).step_by(QUEUED) {
             let queued = QUEUED.min(count - first);
             let begin = Instant::now();
-            let drive = |step: usize| {
-                let time = (first + step + 1) as f64 * f64::from(scene.simulation.time_step);
-                Drive { body: head.pose(time).into(), wind: scene.wind.at(time), ..Drive::default() }
-            };
-            for (step, report) in run(&mut runner, queued, drive)?.iter().enumerate() {
+            for (step, report) in film.run(first, queued)?.iter().enumerate() {
                 let note = steps.add(report, (first + step) as u32);
                 note.into_iter().for_each(|note| progress.note(&note));
             }
@@ -79,25 +70,24 @@ impl Device {
             progress.reached((first + queued) as u64);
         }
         drop(progress);
-        let plain = runner.model();
         let steps = steps.report(Ended {
             placement,
             backend: self.adapter.name.clone(),
-            strands: guides.strand_count(),
-            points_per_strand: guides.points_per_strand(),
-            drift: plain.drift(&runner.state()?),
+            strands: film.strand_count(),
+            points_per_strand: film.points_per_strand(),
+            drift: film.drift()?,
             measures: strandline::Measures::default(),
-            stiffening: plain.stiffening(),
+            stiffening: film.stiffening(),
             jumps: Vec::new(),
             time_step: scene.simulation.time_step,
             tolerance: scene.simulation.volume.tolerance,
         });
-        let costs = runner.costs();
+        let costs = film.costs();
         let solve = steps.ms_per_step.stages.sum(&["solve_pressure"]);
         let rest: f64 = steps.ms_per_step.stages.iter().map(|(_, time)| time).sum::<f64>() - solve;
         let copied = self.adapter.copy_bytes_per_second * rest * 1e-3;
         Ok(GpuRun {
-            us_of_gradient: GradientTimes::measured(&runner, self.adapter.software)?,
+            us_of_gradient: GradientTimes::measured(&film, self.adapter.software)?,
             steps,
             wall_ms_per_step: 1e3 * wall / count.max(1) as f64,
             dispatches: costs.dispatches,
@@ -106,16 +96,4 @@ impl Device {
             share_of_copy_bandwidth: if copied > 0.0 { costs.bytes as f64 / copied } else { 0.0 },
         })
     }
-}
-
-/// Runs steps, and waits for their reports.
-fn run(
-    runner: &mut GpuRunner,
-    count: usize,
-    drive: impl Fn(usize) -> Drive,
-) -> Result<Vec<strandline::StepReport>, SimError> {
-    for step in 0..count {
-        runner.step(&drive(step))?;
-    }
-    runner.reports()
 }

@@ -29,7 +29,7 @@ fn what_is_no_file_is_refused_at_once() {
     }
     let scene = std::fs::read_to_string(at.join("small.toml")).unwrap();
     for (name, keys) in [
-        ("posed.toml", "groom.pose = \"pipe.safetensors\""),
+        ("posed.toml", "groom.pose = \"pipe.npz\""),
         ("attributes.toml", "groom.attributes = \"pipe.safetensors\""),
         ("surroundings.toml", "surroundings.file = \"pipe.hdr\""),
     ] {

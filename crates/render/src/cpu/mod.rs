@@ -27,6 +27,7 @@ pub use shadow::layer_colors::layer_colors;
 pub use shadow::opacity_depth::opacity_depth;
 pub use shadow::opacity_layers::opacity_layers;
 pub use shadow::{Cuts, ShadowBody};
+pub use strands::growth::Growth;
 pub use strands::interpolate::interpolate;
 pub use strands::keep_outside;
 pub use strands::tessellate::{Curves, tessellate};

@@ -1,7 +1,7 @@
 //! Surroundings as a picture: what lights hair and skin from all around.
 //!
 //! Hair sees them as spherical harmonics up to the second order [Ramamoorthi2001, §3], carried through the grid of
-//! scattered light, so that hair and body hide them. What is much brighter than the rest, the sun or a lamp, is taken
+//! scattered light, so that hair and body hide them. A place much brighter than the rest, the sun or a lamp, is taken
 //! out and shines as a distant light with a shadow.
 
 mod exr;

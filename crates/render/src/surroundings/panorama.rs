@@ -67,9 +67,9 @@ impl Panorama {
     /// # Errors
     /// [`RenderError::Surroundings`].
     pub fn load(path: &Path) -> Result<Self, RenderError> {
-        let failed = |reason| RenderError::Surroundings { reason, path: PathBuf::from(path) };
-        let bytes = read_plain(path, Self::MAX_BYTES).map_err(|error| failed(error.to_string()))?;
-        Self::read(&bytes).map_err(failed)
+        let failed = |problem| RenderError::Surroundings { problem, path: PathBuf::from(path) };
+        let bytes = read_plain(path, Self::MAX_BYTES).map_err(|error| failed(error.into()))?;
+        Self::read(&bytes).map_err(|found| failed(found.into()))
     }
 
     /// Width and height \[pixel\].

@@ -2,14 +2,12 @@
 
 pub mod grid;
 mod kind;
-mod lattice;
 pub(crate) mod packing;
 pub(crate) mod set;
 pub mod sort;
 
 pub use grid::{Grid, NO_CELL};
 pub use kind::Kind;
-pub use lattice::Lattice;
 pub use sort::CellSort;
 
 /// Contents of the cells of a volume, as a probe takes them from one backend to the other.

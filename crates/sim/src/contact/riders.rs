@@ -2,8 +2,8 @@
 //!
 //! A plane near the skin moves with its triangle, so that hair which rests there asks for no distance. The distance of a
 //! point far from it stays a lower bound when the most that a vertex near it moves is taken off: a head that turns on
-//! shoulders asks nothing for the hair on it. What a plane needs for this, its
-//! rider, lies in a further plane for each point, behind those of all carriers.
+//! shoulders asks nothing for the hair on it. The values that a plane needs for this, its
+//! rider, lie in a further plane for each point, behind those of all carriers.
 
 use glam::Vec3;
 use strandline_base::par::prelude::*;

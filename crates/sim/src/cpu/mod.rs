@@ -1,7 +1,6 @@
 //! The stages in plain Rust, public so that checks can run each alone.
 
 pub mod advance;
-pub mod cells;
 pub mod constrain;
 pub mod faces;
 pub mod gather;

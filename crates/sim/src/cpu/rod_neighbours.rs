@@ -38,8 +38,8 @@ struct Candidate {
     until: f32,
 }
 
-/// Candidates, and the motion of hair against the head since they were found. What is found does not depend on when
-/// that was.
+/// Candidates, and the motion of hair against the head since they were found. The contacts that are found do not
+/// depend on when that was.
 #[derive(Clone, Default)]
 pub(super) struct Neighbours {
     boxes: Boxes,

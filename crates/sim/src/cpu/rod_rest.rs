@@ -8,7 +8,7 @@ use crate::strands::rods::real::Real;
 use crate::strands::rods::workspace::Workspace;
 
 /// Most that a point of a strand at rest moves in a part of a step, over its square \[m/s^2\]: two thousandths of
-/// gravity. What friction holds creeps by half as much.
+/// gravity. Hair that friction holds creeps by half as much.
 const STILL: f64 = 0.02;
 /// Most of it \[m\] for what neither a solid nor other hair holds, over the square of the part \[m/s^2\], and over the
 /// part \[m/s\]: air that slows a soft thread holds it up by as little.

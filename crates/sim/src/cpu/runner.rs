@@ -5,7 +5,6 @@ use strandline_base::{Stopwatch, par};
 
 use super::Scratch;
 use super::advance::{NonFinite, advance};
-use super::cells::{Cells, cells};
 use super::constrain::constrain;
 use super::gather::gather;
 use super::integrate::integrate;
@@ -39,11 +38,6 @@ impl CpuRunner {
     /// The model.
     pub fn model(&self) -> &Model {
         &self.model
-    }
-
-    /// Points sorted by cell at the start of the last step; `None` before the first and without [`Settings::cells`].
-    pub fn cells(&self) -> Option<&Cells> {
-        self.scratch.as_ref()?.cells.as_ref()
     }
 
     /// Changes the settings between two steps; states stay as they are.
@@ -126,7 +120,6 @@ impl Step<'_> {
         let (state, scratch) = (&mut *self.state, &mut *self.scratch);
         match stage {
             Stage::PoseRoots => pose_roots(model, state, scratch, &obstacles.end),
-            Stage::Cells => scratch.cells.iter_mut().for_each(|sorted| cells(sorted, &state.positions)),
             Stage::Shelter => {
                 let found = scratch.shelter.iter_mut();
                 found.for_each(|found| shelter(model, state, obstacles, drive, found));

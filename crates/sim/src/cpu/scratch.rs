@@ -6,7 +6,6 @@ use strandline_groom::{RestShape, Vec3Lanes};
 use wide::f32x8;
 
 use super::Volume;
-use super::cells::Cells;
 use super::rod_crowd::Crowd;
 use super::shelter::Shelter;
 use crate::cells::Grid;
@@ -26,8 +25,6 @@ pub struct Scratch {
     pub(crate) nodes: Option<Vec<Node<f32x8>>>,
     /// The fluid volume; `None` while it is off.
     pub(crate) volume: Option<Volume>,
-    /// Points sorted by cell; `None` while nothing reads them.
-    pub(crate) cells: Option<Cells>,
     /// Air at the points; `None` where all of it is the wind.
     pub(crate) shelter: Option<Shelter>,
     /// Strands that push each other; empty where they do not.
@@ -71,7 +68,6 @@ impl Scratch {
             nodes: nodes(model, state, &masses),
             masses,
             volume: None,
-            cells: None,
             shelter: None,
             crowd: Crowd::default(),
             made_from: Made::new(model, state),
@@ -92,11 +88,6 @@ impl Scratch {
             self.crowd = Crowd::default();
         }
         self.shelter = model.settings.has_shelter().then(|| self.shelter.take().unwrap_or_default());
-        let old = self.cells.take();
-        self.cells = model
-            .settings
-            .cells
-            .map(|edge| Cells::keep_or_new(old, edge, model.strand_count, model.points_per_strand));
     }
 
     /// Makes the volume fit its settings, with the box of the state. The box of a state without one, or of another number

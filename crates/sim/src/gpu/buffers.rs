@@ -6,7 +6,6 @@ use strandline_gpu::{Buffer, Gpu, THREADS};
 use strandline_groom::{LANES, RestShape, Vec3Lanes};
 
 use super::air_buffers::ShelterBuffers;
-use super::cell_buffers::Cells;
 use super::inputs::Step;
 use super::motion::{Root, has_roots, part_count};
 use super::records::{Outcome, PointBox, PressureState, Report};
@@ -64,7 +63,6 @@ pub(super) struct Buffers {
     /// Report of a step without a volume.
     pub no_pressure: Buffer<PressureState>,
     pub volume: Option<Volume>,
-    pub cells: Option<Cells>,
     pub rods: Option<RodBuffers>,
 }
 
@@ -99,7 +97,6 @@ impl Buffers {
             reports: Buffer::new(gpu, "reports", REPORTS)?,
             no_pressure: Buffer::new(gpu, "no pressure", 1)?,
             volume: None,
-            cells: None,
             rods: match &model.rods {
                 Some(_) => Some(RodBuffers::new(gpu, lane_count, points)?),
                 None => None,

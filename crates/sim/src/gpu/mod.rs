@@ -8,8 +8,6 @@ mod air_buffers;
 mod alone;
 mod between;
 mod buffers;
-mod cell_buffers;
-mod cells;
 mod constrain;
 mod gather;
 mod inputs;

@@ -155,18 +155,6 @@ impl Probe {
         Ok(sorted.iter().map(|point| point.index).collect())
     }
 
-    /// Indices of points sorted by cell, bucket after bucket, and the first place of each bucket in them with their
-    /// number behind the last; empty without `Settings::cells`.
-    ///
-    /// # Errors
-    /// The device was lost.
-    pub fn cells(&self) -> Result<(Vec<u32>, Vec<u32>), SimError> {
-        let Some(cells) = &self.runner.buffers.cells else { return Ok(Default::default()) };
-        let starts = cells.start_index.read()?;
-        let count = starts.last().copied().unwrap_or(0);
-        Ok((cells.order.read_first(count as usize)?, starts))
-    }
-
     /// Velocity of the air at each point \[m/s\]; empty where it is the wind.
     ///
     /// # Errors

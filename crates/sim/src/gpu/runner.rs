@@ -7,7 +7,6 @@ use strandline_gpu::{Buffer, Dispatches, Gpu, GpuError, Recorder, Timer};
 use strandline_groom::{LANES, Lanes, RestShape};
 
 use super::buffers::{Buffers, REPORTS};
-use super::cell_buffers::Cells;
 use super::inputs::Step;
 use super::kernels::Kernels;
 use super::motion::has_roots;
@@ -263,9 +262,6 @@ impl GpuRunner {
                 if let (Stage::Shelter, Some(shelter)) = (stage, self.buffers.shelter()) {
                     recorder.clear(&shelter.sums);
                 }
-                if let (Stage::Cells, Some(cells)) = (stage, &self.buffers.cells) {
-                    recorder.clear(&cells.start_index);
-                }
                 recorder.stage(stage.name(), dispatches);
                 costs.dispatches += dispatches.len();
                 costs.solve_dispatches += if *stage == Stage::SolvePressure { dispatches.len() } else { 0 };
@@ -295,17 +291,6 @@ impl GpuRunner {
             }
             None => None,
         };
-        let edge = self.model.settings.cells;
-        let changed = changed || self.buffers.cells.as_ref().map(|cells| cells.edge) != edge;
-        if changed {
-            self.buffers.cells = match edge {
-                Some(edge) => {
-                    let Buffers { strand_count, lane_count, points, .. } = self.buffers;
-                    Some(Cells::new(&self.gpu, edge, [strand_count, lane_count], points)?)
-                }
-                None => None,
-            };
-        }
         let changed = self.buffers.fit_shelter(&self.gpu, &self.model.settings)? || changed;
         if let (Some(volume), Some(place)) = (&self.buffers.volume, self.volume_box.take()) {
             volume.put(place)?;

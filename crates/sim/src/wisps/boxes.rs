@@ -177,7 +177,8 @@ fn cells(range: &Range) -> impl Iterator<Item = IVec3> + use<> {
     })
 }
 
-/// Bucket of a cell [Teschner2003], as that of a lattice.
+/// Bucket of a cell [Teschner2003]. Products are added: joined by exclusive or, as published, cells on both sides of the
+/// origin share buckets.
 fn bucket(cell: IVec3, mask: u32) -> u32 {
     let [x, y, z] = cell.to_array().map(|number| number as u32);
     x.wrapping_mul(73_856_093)

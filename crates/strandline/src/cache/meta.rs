@@ -1,13 +1,19 @@
 //! Metadata of a cache, as JSON in its array `meta`.
 
+use std::io::{Read, Seek};
+
 use serde::{Deserialize, Serialize};
+use strandline_base::npz::{Kind, Npz};
 
 use super::What;
-use crate::sim::StepReport;
-
-/// The version of the layout, and the first one that is still read. Layout 1 had no lists of bodies.
-pub(super) const LAYOUT: u32 = 2;
-pub(super) const FIRST_LAYOUT: u32 = 1;
+use crate::{
+    scene::MAX_FILE_BYTES,
+    sim::StepReport,
+    snapshot::{
+        arrays::{check_memory, expect, missing, text},
+        check_layout,
+    },
+};
 
 /// The object in `meta`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -107,4 +113,26 @@ impl Report {
         self.penetration_max_m.push(penetration_max_m.is_finite().then_some(penetration_max_m));
         self.non_finite.push(non_finite);
     }
+}
+
+/// Most bytes of `meta` beyond its report: a scene of the longest kind, spelled as JSON.
+const SCENE: u64 = 2 * MAX_FILE_BYTES;
+/// Most bytes that the report has of a frame.
+const REPORT: u64 = 160;
+
+pub(super) fn read_meta<R: Read + Seek>(npz: &mut Npz<R>, frames: u64) -> Result<Meta, String> {
+    let Some(mut rows) = npz.open("meta").map_err(text)? else { return Err(missing(npz, "meta")) };
+    expect(&rows, "meta", Kind::U8, &[Some(rows.bytes())])?;
+    let most = SCENE + REPORT * frames;
+    if rows.bytes() > most {
+        return Err(format!("meta of {} bytes, expected {most} at most for {frames} frames", rows.bytes()));
+    }
+    check_memory("meta", rows.bytes(), 8)?;
+    let bytes = npz.all(&mut rows).map_err(text)?;
+    let meta: Meta = serde_json::from_slice(&bytes).map_err(|error| format!("meta: {error}"))?;
+    check_layout(meta.layout, &meta.units, &meta.up_axis)?;
+    if meta.every == 0 {
+        return Err("meta: every is 0, expected 1 or more".to_owned());
+    }
+    Ok(meta)
 }

@@ -9,13 +9,13 @@ use glam::Vec3;
 use strandline_base::{SettingError, Stopwatch};
 
 use super::{
-    Cache, Frame, Snapshot, Target, What,
+    Cache, Frame, Target, What,
     files::{Files, size},
     shape::{Leaving, Shape},
     store::Store,
     usd::Usd,
 };
-use crate::{Error, Scene, body::BodyFrame, groom::Vec3Lanes, sim::StepReport};
+use crate::{Error, Scene, body::BodyFrame, groom::Vec3Lanes, sim::StepReport, snapshot::Snapshot};
 
 /// Frames, strands and file of a writer.
 #[derive(Clone, Debug)]

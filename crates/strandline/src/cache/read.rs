@@ -6,19 +6,25 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 use strandline_base::{
-    fill_lanes,
+    FileProblem, fill_lanes,
     memory::{self, Need},
     npz::{Kind, Npz, Rows, f32s, f64s},
     open_plain, refuse_busy,
 };
 
-use super::arrays::{check_memory, expect, missing, numbers, read_meta, starts, text};
-use super::{Snapshot, What, meta, relative, state};
+use super::{
+    What,
+    meta::{self, read_meta},
+    relative,
+};
 use crate::{
     Error, Scene,
     body::{BodyFrame, Pose},
-    error::FileProblem,
     groom::{LANES, Vec3Lanes, block_count},
+    snapshot::{
+        self, Snapshot,
+        arrays::{check_memory, expect, missing, numbers, starts, text},
+    },
     strands::bodies::{self, LISTS, OF_FRAMES, WIDTHS},
 };
 
@@ -202,7 +208,8 @@ impl Cache {
 
     /// State of the run, for guides of this shape; none in a cache without it.
     pub(crate) fn snapshot(&mut self, strands: usize, points: usize) -> Result<Option<Snapshot>, Error> {
-        let snapshot = state::read(&mut self.frames.npz, "", (block_count(strands) * LANES * points) as u64);
+        let snapshot =
+            snapshot::read::read(&mut self.frames.npz, "", (block_count(strands) * LANES * points) as u64);
         snapshot.map_err(|found| Error::cache(&self.path, found))
     }
 
@@ -227,7 +234,7 @@ pub fn check_cache(bytes: &[u8]) -> Result<(), String> {
     for frame in 0..frames.times.len() {
         frames.read(frame, &mut points)?;
     }
-    state::read(&mut frames.npz, "", bytes.len() as u64).map(|_| ())
+    snapshot::read::read(&mut frames.npz, "", bytes.len() as u64).map(|_| ())
 }
 
 impl<R: Read + Seek> Frames<R> {

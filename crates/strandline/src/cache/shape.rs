@@ -7,7 +7,7 @@ use strandline_base::{choices, in_strand_order};
 use crate::{
     BoundStrands, Error, Scene,
     body::BodyFrame,
-    groom::{Guides, MOST_INFLUENCES, Vec3Lanes},
+    groom::{Guides, MOST_INFLUENCES, Vec3Lanes, format::MAX_POINTS},
     render::{DetailLevel, Growth, Look},
     strands::tags::Tags,
 };
@@ -138,7 +138,7 @@ impl Shape {
         let all = bound.map_or(guides, BoundStrands::strands);
         let points = level.segment_count(all.points_per_strand()) + 1;
         let strands = all.strand_count() * level.strand_count();
-        if (strands as u64).saturating_mul(points as u64) > super::MAX_POINTS {
+        if (strands as u64).saturating_mul(points as u64) > MAX_POINTS {
             let found = format!("{} strands on each of {}", level.strand_count(), all.strand_count());
             let expected = "268435456 points in all at most: take fewer look.follow_strands";
             return Err(strandline_base::SettingError::new("what = strands", found, expected).into());

@@ -6,16 +6,16 @@ use std::path::{Path, PathBuf};
 use strandline_base::npz::{Array, Growing, GrowingNpz, Kind};
 
 use super::{
-    Frame, Snapshot,
-    meta::{LAYOUT, Meta, Report},
+    Frame,
+    meta::{Meta, Report},
     relative,
     shape::{Attributes, Shape},
-    snapshot,
 };
 use crate::{
     Error, Scene,
     body::BodyFrame,
     sim::StepReport,
+    snapshot::{self, LAYOUT, Snapshot},
     strands::bodies::{self, Lists, OF_FRAMES},
 };
 

@@ -10,6 +10,7 @@ use crate::{
     Scene,
     body::BodyFrame,
     groom::{Groom, Guides},
+    snapshot::Snapshot,
     strands::tags::Tags,
 };
 

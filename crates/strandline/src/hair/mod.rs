@@ -16,6 +16,7 @@ use crate::{
     scene::devices::{Pair, device_name},
     session::{Change, Inline, Session, film_timing::FilmTiming},
     sim::{Settings, State, StepReport},
+    snapshot::files::write_pose,
     strands::tags::Tags,
 };
 
@@ -356,15 +357,13 @@ impl Hair {
         Ok(self.moved_state.insert(state.moved(origin)))
     }
 
-    /// Saves positions and motion of the hair, for `groom.pose` of a scene. Four tensors of the safetensors format, 32-bit
-    /// floats: `positions` \[m\], `velocities` \[m/s\] and `corrections`, which the next step's prediction adds to them
-    /// \[m/s\], world space, shape `[strand][point][3]`; `world_from_head`, shape `[7]`, a unit quaternion x, y, z, w and
-    /// a translation \[m\]. A hand that holds hair is not in it.
+    /// Saves positions and motion of hair and body, for `groom.pose` of a scene: a snapshot in a .npz, whose arrays
+    /// docs/cache.md lists. A hand that holds hair is not in it.
     ///
     /// # Errors
     /// The file cannot be written.
     pub fn save_pose(&mut self, path: &Path) -> Result<(), Error> {
-        let file = self.session.simulation_mut().hair_pose()?.write(path)?;
+        let file = write_pose(&self.session.simulation_mut().hair_pose()?, path)?;
         file.keep().map_err(Error::save("the hair", path))
     }
 

@@ -17,6 +17,7 @@ use crate::{
     prepare::Unbrushed,
     session::worker::Worker,
     session::{Session, Simulation},
+    snapshot::files::write_pose,
 };
 
 /// A scene that plays.
@@ -90,7 +91,7 @@ impl Loaded {
             self.session.take()?;
         }
         let pose_path = pose_path(path);
-        let pose = self.session.with(Simulation::hair_pose)?.write(&pose_path)?;
+        let pose = write_pose(&self.session.with(Simulation::hair_pose)?, &pose_path)?;
         scene.film.start = self.session.time_shown();
         scene.groom.pose = pose_path.file_name().map(PathBuf::from);
         let text = scene.to_toml();
@@ -108,8 +109,8 @@ fn pose_path(scene: &Path) -> PathBuf {
     let before = Scene::load(scene).ok().and_then(|before| before.groom.pose).map(|pose| folder.join(pose));
     let stem = scene.file_stem().unwrap_or_default().to_string_lossy();
     let name = |number: u32| match number {
-        0 => format!("{stem}.safetensors"),
-        number => format!("{stem}_{number}.safetensors"),
+        0 => format!("{stem}_pose.npz"),
+        number => format!("{stem}_pose_{number}.npz"),
     };
     let mut paths = (0..).map(|number| folder.join(name(number)));
     paths.find(|path| !path.exists() || Some(path) == before.as_ref()).unwrap_or_default()

@@ -46,7 +46,7 @@ pub enum Command {
     /// that of [`Command::Save`].
     SaveProject(Box<Scene>, u64, PathBuf),
     /// Draws simpler pictures while the hair moves or is changed and a full one takes longer than
-    /// 80 ms; off to begin with. What stands still is drawn in full after a moment.
+    /// 80 ms; off to begin with. Hair that stands still is drawn in full after a moment.
     Adapt(bool),
     /// Gives pictures the numbers of an overlay, or none to begin with.
     Overlay(Option<Overlay>),

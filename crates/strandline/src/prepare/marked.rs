@@ -139,7 +139,7 @@ impl Seen {
 
 /// Spreads a style, whose strands lie about the skull of the body already, over its marked scalp: along each meridian
 /// the rim of the built-in scalp comes to that of the marked one, what hangs below it follows less and less, and
-/// roots are led onto the mesh. `place` leads from the built-in head to this one. What is to be said of it.
+/// roots are led onto the mesh. `place` leads from the built-in head to this one. Returns a note for a person.
 ///
 /// # Errors
 /// Nothing grows on what is marked.

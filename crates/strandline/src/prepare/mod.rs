@@ -58,7 +58,7 @@ use crate::{
     BoundStrands, Camera, Error, HeadMotion, Scene,
     body::{Aabb, Collider, Mesh, Shape},
     groom::{Binding, Groom, Guides},
-    strands::hair_pose::HairPose,
+    snapshot::{files::load_pose, hair_pose::HairPose},
     strands::tags::Tags,
 };
 
@@ -196,7 +196,7 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
     }
     notes.extend(key_units::notes(&scene));
     let vertices = mesh.as_ref().map_or(0, |mesh| mesh.positions.len());
-    let load = |file: &std::path::PathBuf| HairPose::load(&scene.path(file), shape, vertices);
+    let load = |file: &std::path::PathBuf| load_pose(&scene.path(file), shape, vertices);
     let pose = scene.groom.pose.as_ref().map(load).transpose()?;
     let neck = mesh.as_ref().and_then(|mesh| mesh.neck);
     let (mesh, hidden) =

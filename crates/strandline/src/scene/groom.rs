@@ -97,13 +97,10 @@ settings! {
         /// Velocities are those of the first step: with `settle` above 0 they have died down before the first
         /// picture.
         attributes: Option<PathBuf> = None;
-        /// A file with first positions and motion of the simulated points, as the window and
-        /// `Hair::save_pose` save it: tensors of the safetensors format, `positions` \[m\], `velocities`
-        /// \[m/s\] and `corrections`, the part of the next step's prediction that is added to them \[m/s\] (a
-        /// file may lack it), world space, shape \[strand, point, 3\], and `world_from_head`, a quaternion x,
-        /// y, z, w and a translation \[m\]. A body that is more than a rigid head adds `world_from_piece`,
-        /// shape \[piece, 7\], `root_frames`, shape \[strand, 7\], or `skin`, shape \[vertex, 3\], head space
-        /// \[m\]. The film then begins with hair and body as they are there. Without it hair begins at rest.
+        /// A file with first positions and motion of the simulated points and of the body, as the window and
+        /// `Hair::save_pose` save it: a snapshot in a .npz (docs/cache.md), by itself or in a moving cache of guides.
+        /// Files of earlier builds, with tensors of the safetensors format, are read too. The film then begins with
+        /// hair and body as they are there. Without it hair begins at rest.
         pose: Option<PathBuf> = None;
     }
 }

@@ -10,7 +10,7 @@ use crate::{
     groom::Vec3Lanes,
     render::gpu::DeviceSolids,
     sim::{Checkpoint, Drift, Drive, Measures, Model, Settings, SimError, Simulator, State, StepReport},
-    strands::hair_pose::HairPose,
+    snapshot::hair_pose::HairPose,
 };
 
 /// A simulator that outlives its device.

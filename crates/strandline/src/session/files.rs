@@ -6,8 +6,9 @@ use super::{Executor, Session, resuming};
 use crate::{
     Cache, Error, OutSettings, Scene, What, Written,
     body::BodyFrame,
-    cache::{Leaving, Out, Snapshot},
+    cache::{Leaving, Out},
     sim::StepReport,
+    snapshot::Snapshot,
 };
 
 impl<E: Executor> Session<E> {

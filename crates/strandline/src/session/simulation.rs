@@ -15,11 +15,10 @@ use super::{
 };
 use crate::{
     body::BodyFrame,
-    cache::Snapshot,
     groom::Vec3Lanes,
     scene::Air,
     sim::{Clock, Drift, Drive, Measures, Settings, SimError, State, StepReport, Stiffening, Ticks},
-    strands::hair_pose::HairPose,
+    snapshot::{Snapshot, hair_pose::HairPose},
 };
 
 /// Steps that settling hair makes in one run.

@@ -1,8 +1,8 @@
 //! A second worker: a thread that does one job after the other while this one does something else
 //! [Chen2011 §5].
 //!
-//! The protocol has three words. *Start* hands a job over. *Finish* waits for its result. What a job
-//! needs and what it makes move with it, so that neither side can touch what the other works on: to hand a
+//! The protocol has three words. *Start* hands a job over. *Finish* waits for its result. The inputs
+//! of a job and its results move with it, so that neither side can touch what the other works on: to hand a
 //! thing back with the next start is the *acknowledgement*.
 //!
 //! `checks/loom` compiles this very file with primitives of its own and walks through all orders in which

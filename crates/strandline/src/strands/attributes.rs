@@ -5,9 +5,9 @@ use std::path::Path;
 
 use glam::Vec3;
 use safetensors::{SafeTensors, tensor::Dtype};
-use strandline_base::read_plain;
+use strandline_base::{FileProblem, read_plain};
 
-use crate::{Error, error::FileProblem, groom::Guides};
+use crate::{Error, groom::Guides};
 
 /// Room for the names and shapes in a file \[byte\].
 const HEADER: u64 = 65_536;

@@ -138,7 +138,7 @@ fn a_far_film_is_resumed_to_the_byte() {
 #[test]
 fn points_state_pose_and_hand_are_those_of_the_world() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.safetensors");
+    let path = folder.path().join("a.npz");
     let place = PLACES[1];
     let [mut near, mut far] = [Vec3::ZERO, place].map(|place| {
         Hair::from_prepared(strandline::Prepared::new(&scene(place)).unwrap(), Backend::Cpu).unwrap()

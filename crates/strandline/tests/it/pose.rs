@@ -2,7 +2,7 @@
 #![allow(clippy::disallowed_methods)] // what is held to others may be rounded
 
 use strandline::{
-    Backend, Error, Event, Hair, Picture, Player, Pose, Scene,
+    Backend, Error, Event, Hair, OutSettings, Picture, Player, Pose, Scene,
     low_level::{
         groom::{LANES, Vec3Lanes},
         sim::State,
@@ -53,7 +53,7 @@ fn first_picture(scene: &Scene) -> Picture {
 
 fn goes_on(backend: Backend, method: StrandMethod) {
     let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("swing.safetensors");
+    let file = folder.path().join("swing.npz");
     let mut begun = scene(backend);
     begun.simulation.strands.method = method;
     let mut left = match hair(&begun) {
@@ -133,20 +133,43 @@ fn hair_goes_on_where_it_was_left_on_a_gpu() {
 #[test]
 fn a_pose_of_other_hair_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("swing.safetensors");
+    let file = folder.path().join("swing.npz");
     hair(&scene(Backend::Cpu)).unwrap().save_pose(&file).unwrap();
     let mut other = scene(Backend::Cpu);
     other.groom.pose = Some(file);
     other.style.strand_count = STRANDS + 1;
     let refused = hair(&other).err().unwrap().to_string();
     assert!(
-        refused.contains("the scene's hair has [61, ") && refused.contains("swing.safetensors"),
+        refused.contains("60 strands of 16 points, but the scene's hair has 61 strands")
+            && refused.contains("swing.npz"),
         "{refused}"
     );
     other.groom.pose = Some(folder.path().join("none"));
     let refused = hair(&other).err().unwrap().to_string();
     assert!(refused.starts_with("cannot read the pose of the hair"), "{refused}");
-    let nowhere = folder.path().join("nowhere/a.safetensors");
+    let nowhere = folder.path().join("nowhere/a.npz");
     let refused = hair(&scene(Backend::Cpu)).unwrap().save_pose(&nowhere).unwrap_err().to_string();
     assert!(refused.starts_with("cannot save the hair"), "{refused}");
+}
+
+#[test]
+fn hair_goes_on_from_the_end_of_a_moving_cache() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("swing.npz");
+    let mut begun = scene(Backend::Cpu);
+    begun.film.frames = 4;
+    let mut left = hair(&begun).unwrap();
+    let mut out = left.begin_file(&OutSettings::new(&file)).unwrap();
+    for frame in 0..4 {
+        left.play(frame).unwrap();
+        left.write(&mut out).unwrap();
+    }
+    left.end_file(out).unwrap();
+    begun.groom.pose = Some(file);
+    let mut again = hair(&begun).unwrap();
+    let (left, begun) = (left.state().unwrap(), again.state().unwrap());
+    assert_eq!(apart(&left.positions, &begun.positions), 0.0);
+    assert_eq!(apart(&left.velocities, &begun.velocities), 0.0);
+    assert!(apart(&left.velocities, &vec![Vec3Lanes::default(); left.velocities.len()]) > 0.01);
+    assert_eq!(left.body, begun.body);
 }

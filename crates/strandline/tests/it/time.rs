@@ -141,7 +141,7 @@ fn a_frame_without_time_moves_nothing_but_the_head() {
 #[test]
 fn hair_that_begins_in_a_pose_moves_alike_at_every_frame_rate() {
     let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("turned.safetensors");
+    let file = folder.path().join("turned.npz");
     let film = |rate| {
         let mut scene = scene(1.0 / 120.0, rate, 0.4);
         // The first picture shows it as it is.

@@ -2,7 +2,7 @@
 //!
 //! Hair is summed into cells with its mean direction, skin with its normal. Radiance is carried from cell to cell
 //! along 26 directions; what a cell's hair takes away it gives back as the fibre does, what skin takes away as a
-//! matte surface does, once more with every round. What is found holds all light but that which comes straight from
+//! matte surface does, once more with every round. The sum holds all light but that which comes straight from
 //! a light.
 
 use std::sync::{Arc, OnceLock};

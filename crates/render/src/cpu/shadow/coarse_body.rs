@@ -21,8 +21,8 @@ pub(crate) struct CoarseBody {
 }
 
 impl CoarseBody {
-    /// Carries it to the place of a body with its densities of roots. What materials cut away is left out where that is the
-    /// middle of a triangle.
+    /// Carries it to the place of a body with its densities of roots. Triangles whose middle materials cut away are left
+    /// out.
     pub fn place(&mut self, mesh: &Mesh, surfaces: Option<&Surfaces>, roots: &[f32], frame: &BodyFrame) {
         if !self.is_made {
             let cuts = surfaces.filter(|surfaces| surfaces.cuts);

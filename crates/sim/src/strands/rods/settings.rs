@@ -62,8 +62,8 @@ settings! {
         /// a solid is put out of it without friction.
         newton_steps: u32 = 4, in [1, 64], slider [1, 16],
             more "violent motion that is followed more closely, at a higher cost where it is needed";
-        /// A strand is solved when a Newton step turns none of its segments farther. What is left is a tenth to a
-        /// hundredth of it; hair that rubs comes to the same rest.
+        /// A strand is solved when a Newton step turns none of its segments farther. The angle that is left is a
+        /// tenth to a hundredth of it; hair that rubs comes to the same rest.
         tolerance: f32 = 0.01, in [1e-5, 1.0] "rad", slider [1e-4, 0.05],
             more "fewer Newton steps, motion that is followed less closely";
     }
@@ -84,8 +84,8 @@ choices! {
 }
 
 settings! {
-    /// Hair of a group of the groom that is made of something else than the rest. What it does not give is that of
-    /// `[simulation.strands.rods]`.
+    /// Hair of a group of the groom that is made of something else than the rest. Values that it does not give are
+    /// those of `[simulation.strands.rods]`.
     pub struct GroupSettings {
         /// The group: its name in the groom, or its number.
         group: String = String::new(), required true;

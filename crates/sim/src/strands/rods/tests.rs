@@ -339,7 +339,7 @@ fn a_sag_free_shape_stays_and_an_unstable_one_is_stiffened_until_it_does() {
 
 #[test]
 fn an_upright_rod_buckles_at_the_known_load() {
-    // Greenhill: w L^3 / B = 7.8373. What is stiffened keeps a tenth to spare.
+    // Greenhill: w L^3 / B = 7.8373. A stiffened rod keeps a tenth to spare.
     for count in [12, 24, 48] {
         let critical = |gamma: f64| {
             let points = straight(Vector::new(0.0, 1.0, 0.0), 0.2, count);

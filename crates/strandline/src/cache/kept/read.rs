@@ -17,12 +17,11 @@ use super::{
 use crate::{
     Error, Scene,
     body::BodyFrame,
-    cache::{
-        MAX_FRAMES, Snapshot,
-        arrays::{check_memory, expect, missing, text},
-        state,
-    },
     groom::{LANES, Vec3Lanes},
+    snapshot::{
+        self, MAX_FRAMES, Snapshot,
+        arrays::{check_memory, expect, missing, text},
+    },
     strands::bodies::{self, LISTS, OF_FRAMES, WIDTHS},
 };
 
@@ -138,7 +137,7 @@ impl<R: Read + Seek> KeptFile<R> {
     pub fn mark(&mut self, mark: usize) -> Result<Snapshot, String> {
         let points = (self.meta.strands as usize).next_multiple_of(LANES) * self.meta.points as usize;
         let before = prefix(mark);
-        let found = state::read(&mut self.npz, &before, points as u64)?;
+        let found = snapshot::read::read(&mut self.npz, &before, points as u64)?;
         found.ok_or_else(|| format!("no {before}state_clock, expected one"))
     }
 }

@@ -9,8 +9,8 @@ use strandline_base::npz::{Array, Growing, GrowingNpz, Kind};
 use super::{Meta, meta::LAYOUT, point_bytes, prefix};
 use crate::{
     body::BodyFrame,
-    cache::{Snapshot, snapshot},
     groom::{LANES, Vec3Lanes},
+    snapshot::{self, Snapshot},
     strands::bodies::{self, Lists, OF_FRAMES},
 };
 

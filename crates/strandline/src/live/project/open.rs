@@ -10,14 +10,12 @@ use super::{
 use crate::{
     Error, Scene,
     body::BodyFrame,
-    cache::{
-        Snapshot, check_memory,
-        kept::{FrameNote, KeptFile, MarkNote},
-    },
+    cache::kept::{FrameNote, KeptFile, MarkNote},
     groom::block_count,
     live::timeline::{Frame, Points, Timeline},
     session::{Bookmark, Executor, Session, Weather, resuming},
     sim::{Clock, StepReport},
+    snapshot::{Snapshot, arrays::check_memory},
 };
 
 /// Time \[s\] between a frame and its state that is more than a slow machine loses.

@@ -12,7 +12,6 @@ use crate::{
     Error, Scene,
     body::BodyFrame,
     cache::{
-        Snapshot,
         kept::{self, DirectionNote, FrameNote, MarkNote, Meta},
         relative,
     },
@@ -20,6 +19,7 @@ use crate::{
     scene::PROJECT_SCENE,
     session::{Bookmark, Executor, Session, Simulation},
     sim::StepReport,
+    snapshot::Snapshot,
 };
 
 /// Most bytes of the states in a file.

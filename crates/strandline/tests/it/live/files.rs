@@ -74,7 +74,7 @@ fn a_scene_is_saved_even_when_nobody_waits_for_it() {
     live.send(Change::Reset);
     drop(live);
     let saved = Scene::load(&path).unwrap();
-    assert_eq!(saved.groom.pose, Some("kept.safetensors".into()));
+    assert_eq!(saved.groom.pose, Some("kept_pose.npz".into()));
     // Ten frames at least, shown a step behind.
     assert!(saved.film.start > 9.0 / 60.0 - 1e-6, "{}", saved.film.start);
     let live = Live::new(saved, waking()).unwrap();

@@ -6,6 +6,11 @@ mod helpers;
 mod project;
 mod timeline;
 
+use std::sync::{
+    Arc,
+    atomic::{AtomicBool, Ordering},
+    mpsc::channel,
+};
 use std::time::Duration;
 
 use strandline::{
@@ -14,7 +19,7 @@ use strandline::{
     scene::{MotionName, MotionSection},
 };
 
-use helpers::{error, next, scene, settled, still, wait, waking};
+use helpers::{PATIENCE, error, next, scene, settled, still, wait, waking};
 
 #[test]
 fn it_plays_and_stands_still_and_makes_single_steps() {
@@ -113,7 +118,9 @@ fn first_camera() -> Camera {
 fn it_may_be_left_at_any_moment_under_any_commands() {
     let mut random = strandline::math::Random::new(7, 0);
     for round in 0..12 {
-        let live = Live::new(scene(), waking()).unwrap();
+        let woken = Arc::new(AtomicBool::new(false));
+        let wakes = woken.clone();
+        let live = Live::new(scene(), move || wakes.store(true, Ordering::Relaxed)).unwrap();
         for _ in 0..round * 4 {
             let bits = random.bits();
             live.send(match bits >> 29 {
@@ -132,7 +139,19 @@ fn it_may_be_left_at_any_moment_under_any_commands() {
             });
             std::thread::sleep(Duration::from_micros((bits >> 20).into()));
         }
-        drop(live);
+        let events = live.take_events();
+        let failed =
+            events.iter().find(|event| matches!(event, LiveEvent::Error(..) | LiveEvent::NotLoaded(..)));
+        assert_eq!(failed, None, "round {round}");
+        let (left, ended) = channel();
+        let leaves = std::thread::spawn(move || {
+            drop(live);
+            left.send(()).unwrap();
+        });
+        ended.recv_timeout(PATIENCE).unwrap_or_else(|_| panic!("round {round} does not end"));
+        leaves.join().unwrap();
+        // The threads have ended with it: none of them can wake the window any more.
+        assert_eq!(Arc::strong_count(&woken), 1, "round {round}: a thread is left behind");
     }
 }
 

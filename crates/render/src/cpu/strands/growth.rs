@@ -5,8 +5,10 @@ use std::sync::Arc;
 use strandline_body::{BodyFrame, Solids};
 use strandline_groom::{Binding, Guides, Vec3Lanes};
 
-use crate::cpu::strands::bind::{Carried, bind, drawn_points};
-use crate::cpu::{Curves, interpolate, keep_outside, tessellate};
+use super::bind::{Carried, bind, drawn_points};
+use super::interpolate::interpolate;
+use super::keep_outside;
+use super::tessellate::{Curves, tessellate};
 use crate::strands::Strands;
 use crate::strands::roots::RootTurns;
 use crate::{DetailLevel, Look};

@@ -1,4 +1,12 @@
-//! Snapshots of a run: the numbers from which it resumes to the same bits.
+//! Snapshots of a run: the numbers from which it resumes to the same bits. A moving cache has one of its last frame, a
+//! project several, and a file with the pose of hair is one by itself.
+
+pub(crate) mod arrays;
+pub(crate) mod files;
+pub(crate) mod hair_pose;
+mod pose_file;
+pub(crate) mod read;
+mod tensors;
 
 use glam::Vec3;
 use strandline_base::npz::Array;
@@ -22,8 +30,27 @@ pub(crate) struct Snapshot {
     pub origin: Vec3,
 }
 
+/// The version of the layout of arrays, and the first one that is still read. Layout 1 had no lists of bodies.
+pub(crate) const LAYOUT: u32 = 2;
+const FIRST_LAYOUT: u32 = 1;
+/// Most frames of a file.
+pub(crate) const MAX_FRAMES: u64 = 1_000_000;
+
+/// Refuses a layout of another version of the program, and other units.
+pub(crate) fn check_layout(layout: u32, units: &str, up_axis: &str) -> Result<(), String> {
+    if !(FIRST_LAYOUT..=LAYOUT).contains(&layout) {
+        return Err(format!(
+            "layout {layout}, expected {FIRST_LAYOUT} to {LAYOUT}: it is of another version of the program"
+        ));
+    }
+    if units != "m" || up_axis != "y" {
+        return Err(format!("units `{units}` with {up_axis} up, expected m with y up"));
+    }
+    Ok(())
+}
+
 /// Name of the array of the origin, which a run near that of the world does not have.
-pub(super) const ORIGIN: &str = "state_origin";
+const ORIGIN: &str = "state_origin";
 
 /// Bodies of a snapshot: those of [`Snapshot::bodies`], then the state's.
 const BODIES: usize = 4;
@@ -31,7 +58,7 @@ const BODIES: usize = 4;
 const PREFIX: &str = "state_";
 
 /// Names of the arrays of a state in a file, and those in a checkpoint.
-pub(super) fn names() -> impl Iterator<Item = (String, &'static str)> {
+pub(crate) fn names() -> impl Iterator<Item = (String, &'static str)> {
     Checkpoint::NAMES.into_iter().map(|name| (format!("{PREFIX}{name}"), name))
 }
 
@@ -72,7 +99,7 @@ impl Snapshot {
         let [frame, time, state_time] = clock else {
             return Err("state_clock: expected three numbers".to_owned());
         };
-        if !(0.0..super::MAX_FRAMES as f64).contains(frame) || frame.fract() != 0.0 {
+        if !(0.0..MAX_FRAMES as f64).contains(frame) || frame.fract() != 0.0 {
             return Err(format!("state_clock with frame {frame}, expected a whole number"));
         }
         if !(time.is_finite() && state_time.is_finite() && *time >= 0.0) {

@@ -1,4 +1,5 @@
-//! The arrays of a moving cache as they are read: of the type and shape that they should have, and no larger.
+//! The arrays of a snapshot and of a moving cache as they are read: of the type and shape that they should have, and no
+//! larger.
 
 use std::io::{Read, Seek};
 
@@ -7,20 +8,20 @@ use strandline_base::{
     npz::{Kind, Npz, NpzError, Rows, u32s},
 };
 
-use super::{MAX_FRAMES, MAX_POINTS, MAX_STRANDS, meta};
-use crate::scene::MAX_FILE_BYTES;
+use super::MAX_FRAMES;
+use crate::groom::format::{MAX_POINTS, MAX_STRANDS};
 
-pub(super) fn text(error: NpzError) -> String {
+pub(crate) fn text(error: NpzError) -> String {
     error.to_string()
 }
 
-pub(super) fn missing<R: Read + Seek>(npz: &Npz<R>, name: &str) -> String {
+pub(crate) fn missing<R: Read + Seek>(npz: &Npz<R>, name: &str) -> String {
     let names: Vec<&str> = npz.names().take(20).collect();
-    format!("holds {names:?}, expected {name} and the other arrays of a moving cache (docs/cache.md)")
+    format!("holds {names:?}, expected {name} and the other arrays that docs/cache.md lists")
 }
 
 /// The length of the first axis of an array that has to have a type and a shape.
-pub(super) fn expect(rows: &Rows, name: &str, kind: Kind, shape: &[Option<u64>]) -> Result<u64, String> {
+pub(crate) fn expect(rows: &Rows, name: &str, kind: Kind, shape: &[Option<u64>]) -> Result<u64, String> {
     let fits = rows.shape().len() == shape.len()
         && rows.shape().iter().zip(shape).all(|(found, wanted)| wanted.is_none_or(|wanted| wanted == *found));
     if rows.kind() != kind || !fits {
@@ -47,7 +48,7 @@ pub(crate) fn check_memory(name: &str, bytes: u64, times: u64) -> Result<(), Str
 }
 
 /// All numbers of an array that has to be there.
-pub(super) fn numbers<R: Read + Seek, T>(
+pub(crate) fn numbers<R: Read + Seek, T>(
     npz: &mut Npz<R>,
     name: &str,
     kind: Kind,
@@ -60,7 +61,8 @@ pub(super) fn numbers<R: Read + Seek, T>(
     Ok(convert(&npz.all(&mut rows).map_err(text)?))
 }
 
-pub(super) fn starts<R: Read + Seek>(npz: &mut Npz<R>) -> Result<Vec<u32>, String> {
+/// First point of each strand, then the number of points.
+pub(crate) fn starts<R: Read + Seek>(npz: &mut Npz<R>) -> Result<Vec<u32>, String> {
     let Some(mut rows) = npz.open("starts").map_err(text)? else { return Err(missing(npz, "starts")) };
     if rows.kind() != Kind::U32
         || rows.shape().len() != 1
@@ -76,34 +78,4 @@ pub(super) fn starts<R: Read + Seek>(npz: &mut Npz<R>) -> Result<Vec<u32>, Strin
         return Err(format!("starts that end with {count}, expected to rise from 0 to {MAX_POINTS} at most"));
     }
     Ok(starts)
-}
-
-/// Most bytes of `meta` beyond its report: a scene of the longest kind, spelled as JSON.
-const SCENE: u64 = 2 * MAX_FILE_BYTES;
-/// Most bytes that the report has of a frame.
-const REPORT: u64 = 160;
-
-pub(super) fn read_meta<R: Read + Seek>(npz: &mut Npz<R>, frames: u64) -> Result<meta::Meta, String> {
-    let Some(mut rows) = npz.open("meta").map_err(text)? else { return Err(missing(npz, "meta")) };
-    expect(&rows, "meta", Kind::U8, &[Some(rows.bytes())])?;
-    let most = SCENE + REPORT * frames;
-    if rows.bytes() > most {
-        return Err(format!("meta of {} bytes, expected {most} at most for {frames} frames", rows.bytes()));
-    }
-    check_memory("meta", rows.bytes(), 8)?;
-    let bytes = npz.all(&mut rows).map_err(text)?;
-    let meta: meta::Meta = serde_json::from_slice(&bytes).map_err(|error| format!("meta: {error}"))?;
-    if !(meta::FIRST_LAYOUT..=meta::LAYOUT).contains(&meta.layout) {
-        let (found, first, last) = (meta.layout, meta::FIRST_LAYOUT, meta::LAYOUT);
-        return Err(format!(
-            "layout {found}, expected {first} to {last}: it is of another version of the program"
-        ));
-    }
-    if meta.units != "m" || meta.up_axis != "y" {
-        return Err(format!("units `{}` with {} up, expected m with y up", meta.units, meta.up_axis));
-    }
-    if meta.every == 0 {
-        return Err("meta: every is 0, expected 1 or more".to_owned());
-    }
-    Ok(meta)
 }

@@ -1,4 +1,4 @@
-//! State of a run as it is read.
+//! A snapshot as it is read.
 
 use std::io::{Read, Seek};
 
@@ -6,9 +6,9 @@ use glam::Vec3;
 use strandline_base::npz::{Kind, Npz, f32s, f64s};
 
 use super::{
-    Snapshot,
+    ORIGIN, Snapshot,
     arrays::{check_memory, expect, numbers, text},
-    snapshot,
+    names,
 };
 use crate::{
     sim::Part,
@@ -20,7 +20,7 @@ const NUMBERS_PER_POINT: u64 = 8 * 64;
 
 /// State of the run whose arrays have names with `before` in front; the number of points includes those that fill up the
 /// last block.
-pub(super) fn read<R: Read + Seek>(
+pub(crate) fn read<R: Read + Seek>(
     npz: &mut Npz<R>,
     before: &str,
     points: u64,
@@ -41,7 +41,7 @@ pub(super) fn read<R: Read + Seek>(
         }
     }
     let mut parts = Vec::new();
-    for (name, part) in snapshot::names() {
+    for (name, part) in names() {
         let name = named(&name);
         let Some(mut rows) = npz.open(&name).map_err(text)? else { continue };
         if rows.kind() != Kind::F32 {
@@ -59,7 +59,7 @@ pub(super) fn read<R: Read + Seek>(
         parts.push(Part { name: part, shape, numbers });
     }
     let snapshot = Snapshot::new(&clock, &poses, &lists, parts)?;
-    let origin_name = named(snapshot::ORIGIN);
+    let origin_name = named(ORIGIN);
     if npz.open(&origin_name).map_err(text)?.is_none() {
         return Ok(Some(snapshot));
     }
