@@ -426,7 +426,8 @@ class MotionKeyframes(TypedDict, total=False):
     """The way to the next pose; without it that of `motion.interpolation`. Allowed: one of smooth, linear, hold."""
 
     cut: bool
-    """A jump: the pose before is held until this one. Allowed: true or false."""
+    """A jump: the pose before is held until this one. Hair is carried over jumps of the head; where a pose is held
+    ("hold") and the next one is more than 15 degrees or 0.1 m away, that is a jump too. Allowed: true or false."""
 
 
 class Motion(TypedDict, total=False):
@@ -555,7 +556,8 @@ class CollidersKeyframes(TypedDict, total=False):
     """The way to the next pose; without it that of `motion.interpolation`. Allowed: one of smooth, linear, hold."""
 
     cut: bool
-    """A jump: the pose before is held until this one. Allowed: true or false."""
+    """A jump: the pose before is held until this one. Hair is carried over jumps of the head; where a pose is held
+    ("hold") and the next one is more than 15 degrees or 0.1 m away, that is a jump too. Allowed: true or false."""
 
 
 class Colliders(TypedDict, total=False):
@@ -1086,9 +1088,10 @@ class LookShadow(TypedDict, total=False):
     """Shadows of hair and body [Yuksel2008]."""
 
     map_size: int
-    """Texels along each side of a light's maps; on a GPU at most 2,048 with two shadow lights, 1,024 with eight.
-    Blonde and white hair on a head is up to 0.2 darker than path tracing shows it with 512, 0.1 with 1,024, and as
-    bright with 2,048. Allowed: 16 to 4096."""
+    """Texels along each side of a light's maps; on a GPU at most 2,048 with two shadow lights, 1,024 with eight. 0
+    chooses them by the hair: 512, and for dense light hair, which 512 draw up to 0.2 darker than path tracing does,
+    1,536 with up to three places of lights with shadow and 1,024 with up to eight. Fewer than 16 count as 16.
+    Allowed: 0 to 4096."""
 
     layers: Sequence[float]
     """Distances behind the first hair at which the three layers end, rising; hair farther behind it casts no shadow.

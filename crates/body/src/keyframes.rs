@@ -6,6 +6,11 @@ use strandline_base::math;
 use crate::curve::{Curve, Interpolation, Key};
 use crate::{BodyError, Pose};
 
+/// Sine of half of the least turn, 15 degrees, and least way \[m\] by which the head jumps where a held keyframe ends: less is
+/// a motion that was sampled in steps.
+const LEAST_TURN: f32 = 0.130_526_19;
+const LEAST_WAY: f32 = 0.1;
+
 /// Angles and a displacement at a time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Keyframe {
@@ -24,6 +29,16 @@ pub struct Keyframe {
     pub is_cut: bool,
 }
 
+impl Keyframe {
+    /// True if the pose jumps at the end of this keyframe, which is held, to the next one.
+    fn ends_in_jump(&self, next: &Self) -> bool {
+        let [from, to] = [self, next].map(|key| math::pitch_yaw_roll(key.rotation));
+        let turn = (from.conjugate() * to).xyz().length();
+        let way = self.translation.distance(next.translation);
+        self.interpolation == Interpolation::Hold && (turn > LEAST_TURN || way > LEAST_WAY)
+    }
+}
+
 /// Poses over time through keyframes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Keyframes(Curve<6>);
@@ -36,13 +51,13 @@ impl Keyframes {
             let [x, y, z] = key.translation.as_dvec3().to_array();
             [pitch, yaw, roll, x, y, z]
         };
-        let key = |key: &Keyframe| Key {
+        let key = |(index, key): (usize, &Keyframe)| Key {
             time: key.time,
             value: components(key),
             interpolation: key.interpolation,
-            is_cut: key.is_cut,
+            is_cut: key.is_cut || index > 0 && keys[index - 1].ends_in_jump(key),
         };
-        Curve::new(keys.iter().map(key).collect()).map(Self)
+        Curve::new(keys.iter().enumerate().map(key).collect()).map(Self)
     }
 
     /// The pose at a time \[s\], turned about a pivot \[m\], in a world whose origin lies at `origin` \[m\].
@@ -149,6 +164,27 @@ mod tests {
         assert!((motion.pose(1.0, PIVOT).point(PIVOT) - PIVOT - Vec3::X).length() < 1e-6);
         assert!(motion.is_cut_between(0.99, 1.0) && !motion.is_cut_between(1.0, 2.0));
         assert!(!Motion::Shake.is_cut_between(0.0, 9.0));
+    }
+
+    #[test]
+    fn a_held_pose_ends_in_a_jump_where_the_next_one_is_far() {
+        let jumps = |rotation: [f32; 3], translation: Vec3, interpolation| {
+            let mut keys = [key(0.0, [0.0, 350.0, 0.0], Vec3::ZERO), key(1.0, rotation, translation)];
+            keys[0].interpolation = interpolation;
+            Motion::keyframes(&keys).unwrap().jumps_until(1.0)
+        };
+        for (degrees, way, expected) in [
+            (16.0, 0.0, Some(1)),
+            (-16.0, 0.0, Some(1)),
+            (0.0, 0.11, Some(1)),
+            // A motion that was sampled in steps, and whole turns.
+            (14.0, 0.09, None),
+            (360.0, 0.0, None),
+        ] {
+            let (rotation, translation) = ([0.0, 350.0 + degrees, 0.0], Vec3::X * way);
+            assert_eq!(jumps(rotation, translation, Interpolation::Hold), expected, "{degrees} {way}");
+            assert_eq!(jumps(rotation, translation, Interpolation::Linear), None);
+        }
     }
 
     #[test]

@@ -53,7 +53,7 @@ impl Motion {
         Keyframes::new(keys).map(Self::Keyframes)
     }
 
-    /// Tells whether the head jumps (`is_cut` of a keyframe) later than `after` and not later than `until` \[s\].
+    /// Tells whether the head jumps (`is_cut` of a keyframe, the end of a held one) later than `after` and not later than `until` \[s\].
     pub fn is_cut_between(&self, after: f64, until: f64) -> bool {
         match self {
             Self::Still | Self::Shake | Self::Nod | Self::Turn => false,
@@ -61,7 +61,7 @@ impl Motion {
         }
     }
 
-    /// Number of jumps (`is_cut` of a keyframe) up to a time \[s\]; `None` of a motion without any.
+    /// Number of jumps (`is_cut` of a keyframe, ends of held ones) up to a time \[s\]; `None` of a motion without any.
     pub fn jumps_until(&self, time: f64) -> Option<i64> {
         match self {
             Self::Still | Self::Shake | Self::Nod | Self::Turn => None,

@@ -25,6 +25,7 @@ mod light_field;
 mod lights;
 mod look;
 mod looks;
+mod map_size;
 pub mod memory;
 mod picture;
 mod picture_settings;

@@ -246,6 +246,12 @@ pub(crate) fn at_samples(lights: &[Light], suns: &[Light]) -> Vec<Light> {
     lights.iter().flat_map(|light| light.at_samples()).chain(suns.iter().copied()).collect()
 }
 
+/// Number of places with shadow of all lights and of the suns of the surroundings.
+pub(crate) fn shadow_places(lights: &[Light], suns: &[Light]) -> u64 {
+    let casting = lights.iter().filter(|light| light.shadow);
+    casting.map(|light| light.sample_count() as u64).sum::<u64>() + suns.len() as u64
+}
+
 /// Number of the first place of a light among those of all lights.
 pub(crate) fn first_sample(lights: &[Light], light: usize) -> usize {
     lights.iter().take(light).map(Light::sample_count).sum()

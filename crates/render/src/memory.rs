@@ -5,6 +5,7 @@ use strandline_base::{
     memory::{self, Need},
 };
 
+use crate::lights::shadow_places;
 use crate::shadow::part_count;
 use crate::{DetailLevel, LevelOfDetail, Light, Look, PictureSettings, RenderError};
 
@@ -58,10 +59,8 @@ impl Drawn<'_> {
         let curve_points = level.segment_count(self.points_per_strand) as u64 + 1;
         let follow_strands = self.look.follow_strands;
         let drawn = format!("look.follow_strands = {follow_strands} on each of {} guides", self.guide_count);
-        let casting = self.lights.iter().filter(|light| light.shadow);
-        let suns = self.look.suns().len() as u64;
-        let shadows: u64 = casting.map(|light| light.sample_count() as u64).sum::<u64>() + suns;
-        let size = u64::from(self.look.shadow.map_size);
+        let shadows = shadow_places(self.lights, self.look.suns());
+        let size = u64::from(self.look.map_size(shadows, None, None));
         let maps = format!("look.shadow.map_size = {size} for each of {shadows} lights with shadow");
         let texel = TEXEL_BYTES + PART_BYTES * part_count() as u64;
         let PictureSettings { width, height, supersampling, .. } = self.picture;

@@ -244,7 +244,12 @@ fn joined(
             .filter(|lost| *lost != Attribute::Widths && lost.is_in(&whole.groom) != lost.is_in(&part.groom))
         {
             if !matches!(lost, Attribute::WidthsAlong | Attribute::GroupNames) {
-                whole.problems.push(format!("only some of the files have {}: left out", lost.name()));
+                let has = if lost.is_in(&part.groom) {
+                    "this file alone has"
+                } else {
+                    "not this file but one before it has"
+                };
+                whole.problems.push(format!("{name}: {has} {}: left out", lost.name()));
             }
         }
         whole.groom.append(part.groom);

@@ -90,7 +90,7 @@ impl Renderer {
         picture: &mut Picture,
     ) -> Result<FrameReport, RenderError> {
         input.validate()?;
-        let look = input.look.under_coat();
+        let look = input.look.drawn(input.lights, self.scratch.own_colors.as_ref(), &self.scratch.guides);
         let input = &FrameInput { look: &look, ..*input };
         let mut report = self.run(input, Some(picture))?;
         if self.settings.layers {
@@ -106,7 +106,7 @@ impl Renderer {
     /// A setting outside its range; more memory than may be taken.
     pub fn draw_samples(&mut self, input: &FrameInput) -> Result<FrameReport, RenderError> {
         input.validate()?;
-        let look = input.look.under_coat();
+        let look = input.look.drawn(input.lights, self.scratch.own_colors.as_ref(), &self.scratch.guides);
         self.run(&FrameInput { look: &look, ..*input }, None)
     }
 
@@ -234,7 +234,7 @@ mod tests {
         };
         renderer.draw(&input).unwrap();
         let (opacity, depth) = (renderer.opacity_map(0).unwrap(), renderer.depth_map(0).unwrap());
-        assert_eq!((opacity.width, opacity.height), (look.shadow.map_size, look.shadow.map_size));
+        assert_eq!((opacity.width, opacity.height), (512, 512));
         let greys = |picture: &Picture| picture.pixels.iter().step_by(3).copied().collect::<Vec<u8>>();
         let (opacity, depth) = (greys(&opacity), greys(&depth));
         // Texels have sizes of steps of a quarter at most: the strand crosses four fifths of the 512, but

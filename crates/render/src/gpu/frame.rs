@@ -164,7 +164,7 @@ fn for_each_light(bound: &Bound, threads: usize, scene: &Scene) -> (Bound, [u32;
 /// Boxes of hair and body, windows of the maps in them, and empty maps.
 fn fitting(scene: &Scene, stages: &Stages) -> Vec<(Bound, [u32; 3])> {
     let measured = |bound: &Bound, count: usize| for_each_light(bound, count.div_ceil(fit::RUN), scene);
-    let texels = scene.shadow_count() * (scene.input.look.shadow.map_size as usize).pow(2);
+    let texels = scene.shadow_count() * (scene.input.look.shadow.size() as usize).pow(2);
     let mut list = vec![measured(&stages.measure_hair, scene.point_count())];
     if scene.vertex_count > 0 && scene.shadow_count() > 0 {
         list.push(measured(&stages.measure_body, scene.vertex_count));

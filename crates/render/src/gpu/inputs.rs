@@ -221,7 +221,7 @@ impl Frame {
     pub fn new(scene: &Scene) -> Self {
         let Scene { input, settings, level, .. } = scene;
         let (width, height) = (settings.width as f32, settings.height as f32);
-        let (scale, map_size) = (settings.supersampling as f32, input.look.hair_shadow().map_size);
+        let (scale, map_size) = (settings.supersampling as f32, input.look.shadow.size());
         Self {
             world_from_head: Rigid::from(&input.body.world_from_head()),
             view_from_world: Rigid::from(&input.camera.view_from_world()),

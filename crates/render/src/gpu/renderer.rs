@@ -191,7 +191,7 @@ impl GpuRenderer {
     ) -> Result<FrameReport, RenderError> {
         self.gpu.check_wait("a picture in memory")?;
         input.validate()?;
-        let look = input.look.under_coat();
+        let look = input.look.drawn(input.lights, self.own_colors.as_ref(), &self.guides);
         let input = &FrameInput { look: &look, ..*input };
         let own = match self.own.take() {
             Some(own) => own,
@@ -237,7 +237,7 @@ impl GpuRenderer {
         input.validate()?;
         let (given, lights) = (input.lights, at_samples(input.lights, input.look.suns()));
         input.validate()?;
-        let look = input.look.under_coat();
+        let look = input.look.drawn(input.lights, self.own_colors.as_ref(), &self.guides);
         let input = &FrameInput { look: &look, lights: &lights, ..*input };
         self.points.check(&self.gpu, &self.groom, input, points)?;
         input.check_body(self.skin.vertex_count())?;
@@ -331,7 +331,7 @@ impl GpuRenderer {
             self.strands = None;
             self.strands = Some(Strands::new(&self.gpu, scene.guide_count, strands_per_guide, curve_points)?);
         }
-        let size = scene.input.look.shadow.map_size;
+        let size = scene.input.look.shadow.size();
         if self.maps.as_ref().is_none_or(|maps| maps.size != size || maps.shadows < shadows) {
             self.forget();
             self.maps = None;

@@ -66,7 +66,7 @@ impl ShadowMap {
     pub(crate) fn set(&mut self, settings: &Shadow) {
         let [first, second, third] = settings.layers;
         self.settings = *settings;
-        self.size = settings.map_size as usize;
+        self.size = settings.size() as usize;
         self.starts = Vec4::new(0.0, first, second, 0.0);
         self.inverse_thicknesses =
             Vec4::new(1.0 / first, 1.0 / (second - first), 1.0 / (third - second), 0.0);

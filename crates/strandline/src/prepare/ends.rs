@@ -5,6 +5,7 @@ use strandline_base::math;
 
 use super::{
     guess::{self, Strands},
+    join,
     loading::Loading,
     placing::{Placing, Placings, diagonal},
     sample::NEAR,
@@ -67,7 +68,8 @@ pub(super) fn turn(loading: &mut Loading) {
         let Some(turned) = turned else { continue };
         groom.turn_strands(&turned);
         let note = from_tip_note(&turned);
-        notes.push(format!("{note}: turned; `groom.root_end = \"first\"` leaves them as they are"));
+        let note = format!("{note}: turned; `groom.root_end = \"first\"` leaves them as they are");
+        notes.extend(join::of_file(&scene, scene.groom.file.as_deref(), [note]));
     }
 }
 

@@ -30,6 +30,24 @@ const LEAST_GUIDES: usize = 16;
 /// its first vertex in the drawn body; none of one that is not drawn.
 type Joined = (Option<Mesh>, Vec<Cover>, Vec<Option<usize>>);
 
+/// Notes on a file of strands, which begin with its name where a scene has several.
+pub(super) fn of_file(
+    scene: &Scene,
+    file: Option<&Path>,
+    notes: impl IntoIterator<Item = String>,
+) -> impl Iterator<Item = String> {
+    let file = file.filter(|_| !scene.groom.parts.is_empty()).map(|file| file.display().to_string());
+    notes.into_iter().map(move |note| file.as_ref().map_or(note.clone(), |file| format!("{file}: {note}")))
+}
+
+/// Mends strands of one file, which are in head space. Notes on that and on those unlike the others begin with its name where
+/// a scene has several.
+pub(super) fn mended(scene: &Scene, file: Option<&Path>, groom: &mut Groom) -> Vec<String> {
+    let mut notes = groom.mend();
+    notes.extend(groom.unlike_beside());
+    of_file(scene, file, notes).collect()
+}
+
 /// Adds a scene's further meshes to the first, which is in head space.
 pub(super) fn add_meshes(
     scene: &Scene,
@@ -111,7 +129,8 @@ pub(super) fn add_grooms(
         }
         place(&mut further, placing, part.rotation, part.translation);
         let apart = mesh.and_then(|mesh| guess::apart(&further, mesh));
-        notes.extend(apart.map(|said| format!("{}: {said}", part.file.display())));
+        notes.extend(of_file(scene, Some(&part.file), apart));
+        notes.extend(mended(scene, Some(&part.file), &mut further));
         let next = groom.groups.iter().flatten().max().map_or(0, |group| group.saturating_add(1));
         if part.name.is_some() {
             leave_numbers(&mut further);
@@ -128,7 +147,12 @@ pub(super) fn add_grooms(
         for lost in Attribute::ALL {
             let is_own = matches!(lost, Attribute::Widths | Attribute::WidthsAlong | Attribute::GroupNames);
             if !is_own && lost.is_in(groom) != lost.is_in(&further) {
-                notes.push(format!("only some of the files have {}: left out", lost.name()));
+                let has = if lost.is_in(groom) {
+                    "not this file but one before it has"
+                } else {
+                    "this file alone has"
+                };
+                notes.push(format!("{}: {has} {}: left out", part.file.display(), lost.name()));
             } else if lost == Attribute::Influences && lost.is_in(groom) {
                 // Each counts its own guides from 0.
                 notes.push(format!("{} of files that are brought together are left out", lost.name()));

@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use crate::{
     Scene,
+    body::Interpolation,
     scene::{KeyframeSection, MotionName},
 };
 
@@ -18,23 +19,29 @@ const WHOLE_TURN: f32 = 7.0;
 const PART: f32 = std::f32::consts::PI / 12.0;
 const ROUNDED: f32 = 4e-3;
 
-/// Values of a key: the time \[s\], the displacement \[m\], the angles \[degrees\], and whether it is a jump.
+/// Values of a key: the time \[s\], the displacement \[m\], the angles \[degrees\], whether it is a jump, and whether it is
+/// held until the next one.
 struct Values {
     time: f64,
     translation: Vec3,
     angles: Vec<f32>,
     is_cut: bool,
+    is_held: bool,
 }
 
 /// Names keys that are probably in centimetres or radians: those of the head, of solids and of the camera.
 pub(super) fn notes(scene: &Scene) -> Vec<String> {
-    let mut notes = Vec::new();
+    let (mut notes, way) = (Vec::new(), scene.motion.interpolation);
     if scene.motion.name == MotionName::Keyframes {
-        notes.extend(of_keys("motion.keyframes", ("the head", OF_HEADS), &poses(&scene.motion.keyframes)));
+        notes.extend(of_keys(
+            "motion.keyframes",
+            ("the head", OF_HEADS),
+            &poses(&scene.motion.keyframes, way),
+        ));
     }
     for (index, solid) in scene.colliders.iter().enumerate() {
         let list = format!("colliders[{index}].keyframes");
-        notes.extend(of_keys(&list, ("the solid", OF_OTHERS), &poses(solid.keyframes())));
+        notes.extend(of_keys(&list, ("the solid", OF_OTHERS), &poses(solid.keyframes(), way)));
     }
     let views = scene.camera.keyframes.iter().map(|key| Values {
         time: key.time,
@@ -42,17 +49,20 @@ pub(super) fn notes(scene: &Scene) -> Vec<String> {
         // A window keeps views to any part of a degree.
         angles: Vec::new(),
         is_cut: key.cut,
+        is_held: key.interpolation == Some(Interpolation::Hold),
     });
     notes.extend(of_keys("camera.keyframes", ("the camera", OF_OTHERS), &views.collect::<Vec<_>>()));
     notes
 }
 
-fn poses(keys: &[KeyframeSection]) -> Vec<Values> {
+/// Values of poses, given the way from pose to pose where one does not name its own.
+fn poses(keys: &[KeyframeSection], way: Interpolation) -> Vec<Values> {
     let values = |key: &KeyframeSection| Values {
         time: key.time,
         translation: key.translation,
         angles: key.rotation.to_array().into(),
         is_cut: key.cut,
+        is_held: key.interpolation.unwrap_or(way) == Interpolation::Hold,
     };
     keys.iter().map(values).collect()
 }
@@ -79,7 +89,7 @@ fn of_keys(list: &str, (moved, fastest): (&str, f64), keys: &[Values]) -> Vec<St
 
 /// The first key to which the way from the one before is too fast for metres: its index, the way \[m\] and its time \[s\].
 fn far_key(keys: &[Values], fastest: f64) -> Option<(usize, f32, f64)> {
-    let pairs = keys.windows(2).enumerate().filter(|(_, pair)| !pair[1].is_cut);
+    let pairs = keys.windows(2).enumerate().filter(|(_, pair)| !(pair[0].is_held || pair[1].is_cut));
     let ways = pairs.map(|(index, pair)| {
         (index + 1, pair[1].translation.distance(pair[0].translation), pair[1].time - pair[0].time)
     });
@@ -126,6 +136,9 @@ mod tests {
         assert_eq!(moved(&[0.0, 7.0, 14.0, 21.0, 28.0]), Vec::<String>::new());
         let cut = KeyframeSection { cut: true, ..key(1.0, Vec3::X * 500.0, Vec3::ZERO) };
         assert_eq!(notes_on(vec![key(0.0, Vec3::ZERO, Vec3::ZERO), cut]), Vec::<String>::new(), "a jump");
+        let hold = Some(Interpolation::Hold);
+        let held = KeyframeSection { interpolation: hold, ..key(0.0, Vec3::ZERO, Vec3::ZERO) };
+        assert_eq!(notes_on(vec![held, key(1.0, Vec3::X * 500.0, Vec3::ZERO)]), Vec::<String>::new(), "held");
         let shaken = vec![key(0.0, Vec3::ZERO, Vec3::ZERO), key(0.01, 0.1 * Vec3::X, Vec3::ZERO)];
         assert_eq!(notes_on(shaken), Vec::<String>::new());
     }

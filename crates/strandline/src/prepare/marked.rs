@@ -49,7 +49,10 @@ pub(super) fn scalp(loading: &mut Loading) -> Result<Option<Mesh>, Error> {
     let Some(name) = &body.scalp else {
         let parts = sources.part_names(scene, file)?;
         if let Some(part) = parts.iter().find(|part| part.eq_ignore_ascii_case(LIKELY)) {
-            let note = format!("the body has a part `{part}`: body.scalp = \"{part}\" grows the style on it");
+            let of_file = if body.parts.is_empty() { String::new() } else { format!("{}: ", file.display()) };
+            let note = format!(
+                "{of_file}the body has a part `{part}`: body.scalp = \"{part}\" grows the style on it"
+            );
             loading.notes.push(note);
         }
         return Ok(None);

@@ -1,5 +1,7 @@
 //! Second stage of loading: strands and body in head space, several files as one groom and one mesh.
 
+use std::path::Path;
+
 use glam::Vec3;
 use strandline_base::math;
 
@@ -41,15 +43,25 @@ fn choose(loading: &mut Loading) -> Result<(), Error> {
     let strands = Strands { grooms: &grooms, is_defined: sources.defines_groom(scene) };
     loading.placings = guess::placings(scene, strands, body);
     loading.is_foreign = loading.placings.is_foreign;
-    loading.notes.append(&mut loading.placings.notes);
+    let several = !(scene.groom.parts.is_empty() && scene.body.parts.is_empty());
+    let files = several.then(|| files(scene, |file| file.display().to_string()));
+    let notes = std::mem::take(&mut loading.placings.notes).into_iter();
+    loading.notes.extend(notes.map(|note| match &files {
+        Some(files) => format!("{files}: {note}"),
+        None => note,
+    }));
     loading.placings.refusal.take().map_or(Ok(()), |problem| Err(refused(scene, problem)))
 }
 
 /// The error of a placement that is not sure.
 fn refused(scene: &Scene, problem: String) -> Error {
+    Error::Placement { files: files(scene, |file| scene.path(file).display().to_string()), problem }
+}
+
+/// Names of the files that are placed: the groom on the body.
+fn files(scene: &Scene, name: impl Fn(&Path) -> String) -> String {
     let files = [&scene.groom.file, &scene.body.file];
-    let files = files.into_iter().flatten().map(|file| scene.path(file).display().to_string());
-    Error::Placement { files: files.collect::<Vec<_>>().join(" on "), problem }
+    files.into_iter().flatten().map(|file| name(file)).collect::<Vec<_>>().join(" on ")
 }
 
 /// Brings the meshes into head space.
@@ -72,7 +84,7 @@ fn place_hair(loading: &mut Loading) -> Result<(), Error> {
     }
     place_groom(groom, placings.groom, scene, scene.groom.rotation, scene.groom.translation);
     if let Some(mesh) = mesh.as_ref().filter(|_| loading.is_foreign) {
-        notes.extend(foreign::fit(groom, mesh));
+        notes.extend(join::of_file(scene, scene.groom.file.as_deref(), foreign::fit(groom, mesh)));
     }
     let apart = mesh.as_ref().filter(|_| placings.is_away).map(|mesh| guess::apart(groom, mesh));
     let near = || "the roots do not lie on the skin".to_owned();
@@ -81,11 +93,10 @@ fn place_hair(loading: &mut Loading) -> Result<(), Error> {
     if let Some(problem) = apart.and_then(refusal) {
         return Err(refused(scene, problem));
     }
+    notes.extend(join::mended(scene, scene.groom.file.as_deref(), groom));
     let further = std::mem::take(&mut loading.further_grooms);
     let place = |groom: &mut Groom, placing, turn, by| place_groom(groom, placing, scene, turn, by);
     notes.extend(join::add_grooms(scene, groom, further, placings.groom, mesh.as_ref(), place)?);
-    notes.extend(groom.mend());
-    notes.extend(groom.unlike_beside());
     notes.extend(far_note(groom, scene, mesh.is_some()));
     Ok(())
 }

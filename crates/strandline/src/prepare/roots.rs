@@ -1,6 +1,8 @@
 //! Fifth stage of loading: roots on the skin.
 
-use super::{cover, guess, loading::Loading, marked, wrap};
+use std::path::Path;
+
+use super::{cover, guess, join, loading::Loading, marked, wrap};
 use crate::{Error, groom::Groom};
 
 /// Grows the style where the scene names no groom, leads roots of a style or of another head's hair to the skin, and
@@ -25,7 +27,10 @@ pub(super) fn brushed(loading: &mut Loading) {
     brush(loading);
     let pair = loading.groom.as_ref().zip(loading.own_mesh());
     let apart = pair.and_then(|(groom, mesh)| guess::apart(groom, mesh));
-    loading.notes.extend(apart);
+    let scene = &loading.scene;
+    let files = scene.groom.file.iter().chain(scene.groom.parts.iter().map(|part| &part.file));
+    let files = files.map(|file| file.display().to_string()).collect::<Vec<_>>().join(", ");
+    loading.notes.extend(join::of_file(scene, Some(Path::new(&files)), apart));
 }
 
 /// Strokes of a brush over the hair at rest, in their order.

@@ -41,7 +41,8 @@ settings! {
         translation: Vec3 = Vec3::ZERO, in [-1e4, 1e4] "m";
         /// The way to the next pose; without it that of `motion.interpolation`.
         interpolation: Option<Interpolation> = None;
-        /// A jump: the pose before is held until this one.
+        /// A jump: the pose before is held until this one. Hair is carried over jumps of the head; where a pose is held
+        /// ("hold") and the next one is more than 15 degrees or 0.1 m away, that is a jump too.
         cut: bool = false;
     }
 }

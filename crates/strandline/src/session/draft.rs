@@ -92,7 +92,7 @@ pub(crate) fn simplified<T>(draft: Draft, view: &mut View, act: impl FnOnce(&mut
     }
     let mut look = view.look.clone();
     look.follow_strands = look.follow_strands.min((most / own).max(1));
-    look.shadow.map_size = look.shadow.map_size.min(SMALL_MAP);
+    look.shadow.map_size = look.shadow.size().min(SMALL_MAP);
     look.shadow.rays = look.shadow.rays.min(FEW_RAYS);
     look.shadow.coarse_body = true;
     let scatterings = &mut look.fibre.chiang.scatterings;

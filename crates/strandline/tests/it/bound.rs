@@ -275,6 +275,34 @@ fn several_files_are_one_groom_and_one_body() {
 }
 
 #[test]
+fn notes_on_several_files_begin_with_their_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("lawn.npz");
+    lawn(&path);
+    let mut weeds = Groom::load(&path).unwrap();
+    let of = |groom: &mut Groom, strand: usize, change: &dyn Fn(glam::Vec3) -> glam::Vec3| {
+        let (range, root) = (groom.range(strand), groom.strand(strand)[0]);
+        groom.points[range].iter_mut().for_each(|point| *point = root + change(*point - root));
+    };
+    of(&mut weeds, 7, &|way| 1e-4 * way);
+    weeds.save(folder.path().join("weeds.npz")).unwrap();
+    let mut lawn = Groom::load(&path).unwrap();
+    of(&mut lawn, 11, &|way| -way);
+    lawn.save(&path).unwrap();
+    std::fs::write(folder.path().join("ground.obj"), GROUND).unwrap();
+    let mut scene = Scene { folder: folder.path().to_owned(), ..Scene::default() };
+    (scene.groom.file, scene.body.file) = (Some("lawn.npz".into()), Some("ground.obj".into()));
+    let alone = Prepared::new(&scene).unwrap().notes;
+    let against = "1 strand is led against all those beside, the first is 11: left as in the file";
+    assert!(alone.iter().any(|note| note == against), "{alone:?}");
+    scene.groom.parts = vec![GroomPart { file: "weeds.npz".into(), ..GroomPart::default() }];
+    let both = Prepared::new(&scene).unwrap().notes;
+    let has = |expected: &str| both.iter().any(|note| note == expected);
+    assert!(has(&format!("lawn.npz: {against}")), "{both:?}");
+    assert!(has("weeds.npz: 1 strand is shorter than 1 mm and than 2 % of the median: left out"), "{both:?}");
+}
+
+#[test]
 fn files_of_one_groom_are_placed_together() {
     // A ball of 40 units on a plate, and hair in two files: a tuft in the nape, and the rest, combed to +z. Only both
     // together tell that it is a head, which looks along -z, and how large it is.
@@ -324,6 +352,7 @@ fn files_of_one_groom_are_placed_together() {
     let notes = Prepared::new(&scene).unwrap().notes;
     let said = |words: &str| notes.iter().any(|note| note.contains(words));
     assert!(said("turned by 180 degrees") && said("a unit of the groom is 0.00254 m"), "{notes:?}");
+    assert!(said("nape.npz on head.obj: taken from the files"), "{notes:?}");
 }
 
 #[test]

@@ -5,7 +5,7 @@
 use glam::{Vec3, vec3};
 use strandline::{
     Backend, Groom, Hair, Pose, Prepared, Scene, Sources,
-    scene::{CarrierName, ColliderSection, KeyframeSection, Model, MotionName, SphereSection},
+    scene::{CarrierName, ColliderSection, Interpolation, KeyframeSection, Model, MotionName, SphereSection},
 };
 
 const RADIUS: f32 = 0.05;
@@ -83,4 +83,27 @@ fn keyframes_of_a_solid_are_set_by_key_and_checked() {
     assert_eq!(ball.keyframes[1].time, 0.75);
     let error = scene.set("colliders[0].keyframes[1].time", "-1").unwrap_err().to_string();
     assert!(error.contains("keyframe"), "{error}");
+}
+
+/// A head that turns by 40 degrees and moves by 0.3 m at once, less than any jump by itself, where a held pose ends.
+#[test]
+fn hair_is_carried_over_the_end_of_a_held_pose() {
+    let played = |interpolation| {
+        let mut scene = scene(CarrierName::World, false);
+        scene.colliders.clear();
+        let key =
+            |time: f64| KeyframeSection { time, interpolation: Some(interpolation), ..Default::default() };
+        let (rotation, translation) = (vec3(0.0, 40.0, 0.0), vec3(0.3, 0.0, 0.0));
+        scene.motion.keyframes =
+            vec![key(0.0), key(0.19), KeyframeSection { rotation, translation, ..key(0.2) }];
+        let mut hair = hair(&scene);
+        let speeds = (0..10).flat_map(|frame| hair.play(frame).unwrap()).map(|report| report.speed_max);
+        let fastest = speeds.fold(0.0, f32::max);
+        (fastest, hair.take_notes().join("\n"))
+    };
+    let (carried, notes) = played(Interpolation::Hold);
+    assert!(notes.contains("and 40 degrees, as marked: hair is carried with it"), "{notes}");
+    let (pulled, notes) = played(Interpolation::Linear);
+    assert!(!notes.contains("jumps"), "{notes}");
+    assert!(carried < 0.5 && pulled > 2.0, "carried at {carried} m/s, pulled at {pulled} m/s");
 }
