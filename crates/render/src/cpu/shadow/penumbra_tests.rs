@@ -139,6 +139,6 @@ fn rays_together_and_without_empty_steps_tell_the_bits_of_each_alone() {
             assert_eq!(found.to_bits(), expected.to_bits(), "{rays} {point}: {found} {expected}");
             kinds[usize::from(found > 0.0) + usize::from(found == 1.0)] += 1;
         }
-        assert!(kinds.iter().all(|count| *count > 20), "{kinds:?}");
+        assert!(kinds[1] > 100 && kinds[2] > 100, "{kinds:?}");
     }
 }
