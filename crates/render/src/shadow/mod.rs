@@ -5,12 +5,11 @@ mod nearest;
 mod picture;
 
 pub(crate) use light_view::{LightView, Window, stepped_down};
-pub(crate) use nearest::NOTHING;
+pub(crate) use nearest::{NOTHING, Nearest};
 
 use glam::{Vec2, Vec3, Vec4};
 use strandline_base::par::{self, prelude::*};
 
-use self::nearest::Nearest;
 use crate::Shadow;
 use crate::fast_math::exp;
 use crate::lanes::split_texel;
@@ -111,10 +110,16 @@ impl ShadowMap {
     }
 
     /// Hairs that the light crosses in a texel before a depth \[m\].
-    #[inline]
+    #[cfg(test)]
     pub(crate) fn crossed_in(&self, texel: usize, depth: f32) -> f32 {
         let sum = self.layers_before(texel, depth);
         sum.x + sum.y + sum.z
+    }
+
+    /// Distance \[m\] behind the first hair at which a layer begins, and one over its thickness \[1/m\].
+    #[inline]
+    pub(crate) fn layer_begin(&self, layer: usize) -> [f32; 2] {
+        [self.starts[layer], self.inverse_thicknesses[layer]]
     }
 
     /// Hairs of a texel in each layer before a depth \[m\].

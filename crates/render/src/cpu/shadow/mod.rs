@@ -7,6 +7,8 @@ pub mod layer_colors;
 pub mod opacity_depth;
 pub mod opacity_layers;
 mod penumbra;
+#[cfg(test)]
+mod penumbra_tests;
 
 pub use body::{Cuts, ShadowBody};
 pub(crate) use coarse_body::CoarseBody;

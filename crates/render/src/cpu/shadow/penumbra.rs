@@ -4,65 +4,93 @@
 //! followed through the map: a ray lies beside the place's own one by a distance that grows with the distance before
 //! the point. A texel of the body hides a ray where both lie equally far before the point; hair is crossed layer by
 //! layer. The share changes as smoothly as the maps do, since no blocker is searched for.
+//!
+//! Four rays are followed together, each to the bit as alone, and steps at which nothing lies before any ray are left out.
 
-use glam::{Vec2, Vec3};
-use wide::f32x4;
+use glam::{Vec2, Vec3, Vec4};
+use wide::{f32x4, i32x4};
 
 use crate::fast_math::exp;
-use crate::shadow::{LightView, ShadowMap, Window};
+use crate::shadow::{LightView, NOTHING, Nearest, ShadowMap, Window};
 
 /// Steps of a ray.
-const STEPS: usize = 7;
+pub(super) const STEPS: usize = 7;
 /// Distance \[m\] of the first step before the point; each further one lies twice as far.
-const FIRST_GAP: f32 = 0.015;
+pub(super) const FIRST_GAP: f32 = 0.015;
 /// Greatest share of the distance to the light at which a step lies.
-const FARTHEST: f32 = 0.8;
+pub(super) const FARTHEST: f32 = 0.8;
 /// Share of the distance to the next step up to which hair belongs to a step: one over the square root of 2.
-const BETWEEN: f32 = 0.707_106_77;
+pub(super) const BETWEEN: f32 = 0.707_106_77;
 /// Least side \[texel\] of the square that the rays of a place cross a map in.
-const LEAST_SIDE: f32 = 2.0;
+pub(super) const LEAST_SIDE: f32 = 2.0;
 /// Distance \[texel\] by which a point is lifted off the skin: beside it the skin of a slope is nearer to the light.
-const LIFT: f32 = 1.5;
+pub(super) const LIFT: f32 = 1.5;
 /// Shares of a whole, many steps of which are spread evenly over it and over each other.
-const GOLDEN: f32 = 0.618_034;
-const PLASTIC: f32 = 0.754_877_7;
-const OTHER: f32 = 0.569_840_3;
+pub(super) const GOLDEN: f32 = 0.618_034;
+pub(super) const PLASTIC: f32 = 0.754_877_7;
+pub(super) const OTHER: f32 = 0.569_840_3;
+/// Least and greatest multiple of the steps' distances.
+const STRETCHES: [f32; 2] = [0.75, 1.5];
+/// Rays that are followed together.
+const LANES: usize = 4;
 
-/// Middle and corners of a part of a light: rays to them tell whether more are needed. So few are followed at once.
-const CORNERS: [Vec2; 5] =
-    [Vec2::ZERO, Vec2::new(-0.5, -0.5), Vec2::new(0.5, -0.5), Vec2::new(-0.5, 0.5), Vec2::new(0.5, 0.5)];
+/// Middle of a part of a light, and its corners: rays to them tell whether more are needed. So few are followed at once.
+const MIDDLE: [Vec2; LANES] = [Vec2::ZERO; LANES];
+pub(super) const CORNERS: [Vec2; LANES] =
+    [Vec2::new(-0.5, -0.5), Vec2::new(0.5, -0.5), Vec2::new(-0.5, 0.5), Vec2::new(0.5, 0.5)];
 
-/// A ray to a part of a light.
+/// Rays to a part of a light, one in a lane.
 #[derive(Clone, Copy)]
-struct Ray {
-    /// Its end in a square of side 1 about 0.
-    end: Vec2,
-    /// Its steps' distances as a multiple of those of other rays: those of all rays together lie evenly.
-    stretch: f32,
+struct Rays {
+    /// Their ends in a square of side 1 about 0.
+    ends: [f32x4; 2],
+    /// Their steps' distances as a multiple of those of other rays: those of all rays together lie evenly.
+    stretch: f32x4,
 }
 
-impl Ray {
-    /// A ray of so many to a place, given as the place's number and the number of places.
+impl Rays {
+    /// Four rays, from a number on, of so many to a place, given as the place's number and the number of places.
     #[inline]
-    fn new(ray: usize, rays: usize, [place, count]: [usize; 2]) -> Self {
-        let part = |number: f32| number - number.floor();
-        let across = ((ray * count + place) as f32 + 0.5) / (rays * count) as f32;
-        let along = part(ray as f32 * GOLDEN + place as f32 * PLASTIC);
-        let stretch = 0.75 + 0.75 * part(ray as f32 * OTHER + place as f32 * GOLDEN);
-        Self { end: Vec2::new(across, along) - 0.5, stretch }
+    fn new(first: usize, rays: usize, [place, count]: [usize; 2]) -> Self {
+        let part = |number: f32x4| number - f32x4::from_i32x4(number.fast_trunc_int());
+        let lanes: [usize; LANES] = std::array::from_fn(|lane| first + lane);
+        let number = f32x4::from(lanes.map(|ray| ray as f32));
+        let place_of = |share: f32| f32x4::splat(place as f32 * share);
+        let half = f32x4::splat(0.5);
+        let across = f32x4::from(lanes.map(|ray| (ray * count + place) as f32)) + half;
+        let along = part(number * f32x4::splat(GOLDEN) + place_of(PLASTIC));
+        let stretched = part(number * f32x4::splat(OTHER) + place_of(GOLDEN));
+        Self {
+            ends: [across / f32x4::splat((rays * count) as f32) - half, along - half],
+            stretch: f32x4::splat(STRETCHES[0]) + f32x4::splat(STRETCHES[1] - STRETCHES[0]) * stretched,
+        }
     }
 
-    /// Distance \[m\] of a step before the point.
+    /// Rays to ends in the square.
     #[inline]
-    fn gap(&self, step: usize) -> f32 {
-        FIRST_GAP * (1_u32 << step) as f32 * self.stretch
+    fn to(ends: [Vec2; LANES]) -> Self {
+        let along = |axis: usize| f32x4::from(ends.map(|end| end[axis]));
+        Self { ends: [along(0), along(1)], stretch: f32x4::ONE }
+    }
+
+    /// Distances \[m\] of a step before the point.
+    #[inline]
+    fn gaps(&self, step: usize) -> f32x4 {
+        f32x4::splat(gap(step)) * self.stretch
     }
 
     /// Distances \[m\] before the point between which hair is crossed at a step.
     #[inline]
-    fn slice(&self, step: usize) -> [f32; 2] {
-        [if step == 0 { 0.0 } else { BETWEEN * self.gap(step) }, BETWEEN * self.gap(step + 1)]
+    fn slices(&self, step: usize) -> [f32x4; 2] {
+        let between = f32x4::splat(BETWEEN);
+        [if step == 0 { f32x4::ZERO } else { between * self.gaps(step) }, between * self.gaps(step + 1)]
     }
+}
+
+/// Distance \[m\] of a step before the point, of a ray that is not stretched.
+#[inline]
+fn gap(step: usize) -> f32 {
+    FIRST_GAP * (1_u32 << step) as f32
 }
 
 /// The rays of a place where they cross a map.
@@ -75,6 +103,8 @@ struct Way {
     sides: [Vec2; 2],
     /// Least displacement of a ray per metre on the light.
     least: f32,
+    /// Steps at which some ray may meet something, a bit each.
+    steps: u32,
 }
 
 impl Way {
@@ -86,24 +116,83 @@ impl Way {
             depth: seen.z,
             sides: view.part.map(|side| side * window.density),
             least: LEAST_SIDE / (side * window.density).max(1e-12),
+            steps: 0,
         }
     }
 
-    /// Texel coordinates of a ray at a step.
+    /// Finds the steps at which some ray may meet what lies at the least depth about all of them. `meets` tells it of a step and
+    /// a depth; what it is false for it is false for at all further steps.
+    fn among(mut self, nearest: &Nearest, meets: impl Fn(usize, f32) -> bool) -> Self {
+        let half = 0.5 * (self.sides[0].abs() + self.sides[1].abs());
+        for step in (0..STEPS).take_while(|step| meets(*step, nearest.least())) {
+            let gap = (gap(step) * STRETCHES[1]).min(FARTHEST * self.depth);
+            let [aside, ..] = aside(self.depth, f32x4::splat(gap)).to_array();
+            // A texel more than the texels about a ray's place, for what rounding moves it.
+            let reach = half * aside.max(self.least) + 1.0;
+            let least = nearest.within(self.middle - 0.5 - reach, self.middle - 0.5 + reach);
+            self.steps |= u32::from(meets(step, least)) << step;
+        }
+        self
+    }
+
+    /// Those steps.
     #[inline]
-    fn at(&self, ray: &Ray, step: usize) -> Vec2 {
-        let gap = ray.gap(step).min(FARTHEST * self.depth);
-        let aside = LightView::aside(self.depth, gap).max(self.least);
-        self.middle + (self.sides[0] * ray.end.x + self.sides[1] * ray.end.y) * aside
+    fn steps(&self) -> impl Iterator<Item = usize> + use<> {
+        let steps = self.steps;
+        (0..STEPS).filter(move |step| steps >> step & 1 == 1)
+    }
+
+    /// Texel coordinates of rays at a step.
+    #[inline]
+    fn at(&self, rays: &Rays, step: usize) -> [f32x4; 2] {
+        let gap = rays.gaps(step).fast_min(f32x4::splat(FARTHEST * self.depth));
+        let aside = aside(self.depth, gap).fast_max(f32x4::splat(self.least));
+        let along = |axis: usize| {
+            let [first, second] = self.sides.map(|side| f32x4::splat(side[axis]));
+            f32x4::splat(self.middle[axis]) + (first * rays.ends[0] + second * rays.ends[1]) * aside
+        };
+        [along(0), along(1)]
     }
 }
 
-impl LightView {
-    /// Displacement \[plane\] of a ray per metre on the light, by the depth \[m\] of the point and the distance \[m\]
-    /// before it.
+/// Displacements \[plane\] of rays per metre on the light, by the depth \[m\] of the point and distances \[m\] before it.
+#[inline]
+fn aside(depth: f32, gap: f32x4) -> f32x4 {
+    let depth = f32x4::splat(depth);
+    gap / (depth * (depth - gap).fast_max(f32x4::splat(1e-3)))
+}
+
+/// Places in a map, one in a lane.
+struct Crossing {
+    /// True, as a mask, for places that have four texels about them.
+    within: f32x4,
+    /// Columns and rows of the first of the four texels.
+    first: [i32x4; 2],
+    /// Ways from its middle \[texel\].
+    part: [f32x4; 2],
+}
+
+impl Crossing {
+    /// Column and row of a lane.
     #[inline]
-    fn aside(depth: f32, gap: f32) -> f32 {
-        gap / (depth * (depth - gap).max(1e-3))
+    fn first(&self, lane: usize) -> [usize; 2] {
+        self.first.map(|numbers| numbers.to_array()[lane] as u32 as usize)
+    }
+
+    /// Weights of the four texels.
+    #[inline]
+    fn weights(&self) -> [f32x4; 4] {
+        let ([x, y], one) = (self.part, f32x4::ONE);
+        [(one - x) * (one - y), x * (one - y), (one - x) * y, x * y]
+    }
+
+    /// Least depths \[m\] about the places, [`NOTHING`] beside the map.
+    #[inline]
+    fn nearest(&self, nearest: &Nearest) -> f32x4 {
+        let within = self.within.to_bitmask();
+        f32x4::from(std::array::from_fn(|lane| {
+            if within >> lane & 1 == 1 { nearest.about(self.first(lane)) } else { NOTHING }
+        }))
     }
 }
 
@@ -115,72 +204,142 @@ impl ShadowMap {
             return self.transmittance(point);
         }
         let Some(seen) = self.view.project(point) else { return 1.0 };
-        let texel = 1.0 / (self.view.scale(seen.z) * self.body_window.density).max(1e-12);
-        let lifted = self.view.project(point + normal * (LIFT * texel).min(self.body_bias));
-        let body = Way::new(&self.view, &self.body_window, lifted.unwrap_or(seen));
-        let hair = Way::new(&self.view, &self.hair_window, seen);
-        let share = |ray: Ray| {
-            let open = if self.body_depths.is_empty() { 1.0 } else { self.past_body(&body, ray) };
-            if open > 0.0 { open * self.past_hair(&hair, ray) } else { 0.0 }
+        let (body, hair) = (self.body_way(point, normal, seen), self.hair_way(seen));
+        if body.steps | hair.steps == 0 {
+            return 1.0;
+        }
+        let shares = |rays: &Rays| -> [f32; LANES] {
+            let open = self.past_body(&body, rays);
+            let hair = self.past_hair(&hair, rays, open.simd_gt(f32x4::ZERO).to_bitmask());
+            (open * hair).to_array()
         };
         let rays = self.settings.rays_of(places[1]);
-        if rays > CORNERS.len() {
-            let corner = |end: Vec2| share(Ray { end, stretch: 1.0 });
-            let first = corner(CORNERS[0]);
+        if rays > 1 + CORNERS.len() {
+            let [first, ..] = shares(&Rays::to(MIDDLE));
             let plain = first == 0.0 || first == 1.0;
-            if plain && CORNERS[1..].iter().all(|&end| corner(end) == first) {
+            if plain && shares(&Rays::to(CORNERS)) == [first; LANES] {
                 return first;
             }
         }
-        (0..rays).map(|ray| share(Ray::new(ray, rays, places))).sum::<f32>() / rays as f32
+        let mut sum = 0.0;
+        for first in (0..rays).step_by(LANES) {
+            let shares = shares(&Rays::new(first, rays, places));
+            shares[..LANES.min(rays - first)].iter().for_each(|share| sum += share);
+        }
+        sum / rays as f32
     }
 
-    /// Share of a ray that the body lets through.
+    /// The way of rays past the body, from off the skin.
+    fn body_way(&self, point: Vec3, normal: Vec3, seen: Vec3) -> Way {
+        let texel = 1.0 / (self.view.scale(seen.z) * self.body_window.density).max(1e-12);
+        let lifted = self.view.project(point + normal * (LIFT * texel).min(self.body_bias));
+        let way = Way::new(&self.view, &self.body_window, lifted.unwrap_or(seen));
+        if self.body_depths.is_empty() {
+            return way;
+        }
+        let depth = way.depth;
+        way.among(&self.nearest_body, |step, least| {
+            // What lies nearer to the point than the step before does not count: see `past_body`.
+            let nearer = if step == 0 { 0.0 } else { 0.999 * STRETCHES[0] * gap(step - 1) };
+            depth - least > self.body_bias.max(nearer)
+        })
+    }
+
+    /// The way of rays through hair.
+    fn hair_way(&self, seen: Vec3) -> Way {
+        let way = Way::new(&self.view, &self.hair_window, seen);
+        way.among(&self.nearest_hair, |step, least| {
+            let near = if step == 0 { 0.0 } else { 0.999 * BETWEEN * STRETCHES[0] * gap(step) };
+            least < seen.z - near
+        })
+    }
+
+    /// Places where rays cross the map at a step.
     #[inline]
-    fn past_body(&self, way: &Way, ray: Ray) -> f32 {
-        let [bias, one] = [self.body_bias, 1.0].map(f32x4::splat);
-        let share = |reached: f32x4| reached.max(f32x4::ZERO).min(one);
+    fn cross(&self, way: &Way, rays: &Rays, step: usize) -> Crossing {
+        let limit = f32x4::splat(self.size as f32 - 1.0);
+        let at = way.at(rays, step).map(|texel| texel - f32x4::splat(0.5));
+        let [x, y] = at.map(|at| at.simd_ge(f32x4::ZERO) & at.simd_lt(limit));
+        let first = at.map(f32x4::fast_trunc_int);
+        let part = [0, 1].map(|axis| at[axis] - f32x4::from_i32x4(first[axis]));
+        Crossing { within: x & y, first, part }
+    }
+
+    /// Shares of rays that the body lets through.
+    #[inline]
+    fn past_body(&self, way: &Way, rays: &Rays) -> f32x4 {
+        let [bias, softness, depth, zero, one] =
+            [self.body_bias, self.inverse_softness, way.depth, 0.0, 1.0].map(f32x4::splat);
+        let share = |reached: f32x4| reached.fast_max(zero).fast_min(one);
         // One over the distances before the point of the steps at both sides: it counts for the two that it lies between.
-        let mut inverse = 1.0 / ray.gap(0);
-        let mut hidden = 0.0;
-        for step in 0..STEPS {
-            let (before, after) = (2.0 * inverse, inverse);
-            inverse *= 0.5;
-            let Some((first, weights)) = self.place(way.at(&ray, step)) else { continue };
-            if way.depth - self.nearest_body.about(first) <= self.body_bias {
+        let inverse = one / rays.gaps(0);
+        let mut hidden = zero;
+        for step in way.steps() {
+            let after = inverse * f32x4::splat(1.0 / (1_u32 << step) as f32);
+            let before = after + after;
+            let crossing = self.cross(way, rays, step);
+            let gap = depth - crossing.nearest(&self.nearest_body);
+            let reached = if step == 0 { gap.simd_gt(bias) } else { (gap * before).simd_gt(one) };
+            let meets = (reached & gap.simd_gt(bias)).to_bitmask();
+            if meets == 0 {
                 continue;
             }
-            let depths = self.quad_at(first).map(|texel| self.body_depths[texel]);
-            let gap = f32x4::splat(way.depth) - f32x4::from(depths);
-            let reached = match step {
-                0 => (gap - bias) * f32x4::splat(self.inverse_softness),
-                _ => gap * f32x4::splat(before) - one,
-            };
-            let passed = if step + 1 < STEPS { gap * f32x4::splat(after) - one } else { f32x4::ZERO };
-            let hides = (share(reached) - share(passed)).max(f32x4::ZERO);
-            hidden += (gap.simd_gt(bias) & (hides * f32x4::from(weights))).reduce_add();
+            let found = f32x4::transpose(std::array::from_fn(|lane| {
+                let texels = || self.quad_at(crossing.first(lane)).map(|texel| self.body_depths[texel]);
+                f32x4::from(if meets >> lane & 1 == 1 { texels() } else { [NOTHING; 4] })
+            }));
+            let [a, b, c, d] = [0, 1, 2, 3].map(|corner| {
+                let gap = depth - found[corner];
+                let reached = if step == 0 { (gap - bias) * softness } else { gap * before - one };
+                let passed = if step + 1 < STEPS { gap * after - one } else { zero };
+                let hides = (share(reached) - share(passed)).fast_max(zero);
+                gap.simd_gt(bias) & (hides * crossing.weights()[corner])
+            });
+            hidden += a + b + c + d;
+            if !hidden.simd_lt(one).any() {
+                break;
+            }
         }
-        1.0 - hidden.min(1.0)
+        one - hidden.fast_min(one)
     }
 
-    /// Share of a ray that the hair lets through.
+    /// Shares of rays that the hair lets through; 1 for rays without a bit in `open`.
     #[inline]
-    fn past_hair(&self, way: &Way, ray: Ray) -> f32 {
-        let mut crossed = 0.0;
-        for step in 0..STEPS {
-            let Some((first, weights)) = self.place(way.at(&ray, step)) else { continue };
-            let [near, far] = ray.slice(step);
-            if self.nearest_hair.about(first) >= way.depth - near {
+    fn past_hair(&self, way: &Way, rays: &Rays, open: u32) -> f32x4 {
+        let depth = f32x4::splat(way.depth);
+        let mut crossed = [0.0; LANES];
+        for step in way.steps().take_while(|_| open > 0) {
+            let crossing = self.cross(way, rays, step);
+            let [near, far] = rays.slices(step).map(|slice| depth - slice);
+            let meets = open & crossing.nearest(&self.nearest_hair).simd_lt(near).to_bitmask();
+            if meets == 0 {
                 continue;
             }
-            for (texel, weight) in self.quad_at(first).into_iter().zip(weights) {
-                if self.texels[texel].w < way.depth - near {
-                    let behind = step + 1 < STEPS;
-                    let before = if behind { self.crossed_in(texel, way.depth - far) } else { 0.0 };
-                    crossed += weight * (self.crossed_in(texel, way.depth - near) - before);
-                }
+            let weights = f32x4::transpose(crossing.weights());
+            let [near, far] = [near, far].map(f32x4::to_array);
+            for (lane, crossed) in crossed.iter_mut().enumerate().filter(|(lane, _)| meets >> lane & 1 == 1) {
+                let texels = self.quad_at(crossing.first(lane)).map(|texel| self.texels[texel]);
+                let far = (step + 1 < STEPS).then_some(far[lane]);
+                let between = self.crossed_between(texels, near[lane], far) * weights[lane];
+                between.to_array().iter().for_each(|hairs| *crossed += hairs);
             }
         }
-        if crossed > 0.0 { exp(crossed * self.log_transmission()) } else { 1.0 }
+        let passed = |crossed: f32| if crossed > 0.0 { exp(crossed * self.log_transmission()) } else { 1.0 };
+        f32x4::from(crossed.map(passed))
+    }
+
+    /// Hairs of four texels before a depth \[m\], less those before a second one.
+    #[inline]
+    fn crossed_between(&self, texels: [Vec4; 4], near: f32, far: Option<f32>) -> f32x4 {
+        let [r, g, b, w] = f32x4::transpose(texels.map(|texel| f32x4::from(texel.to_array())));
+        let before = |depth: f32| {
+            let behind = f32x4::splat(depth) - w;
+            let layer = |hairs: f32x4, at: usize| {
+                let [start, inverse] = self.layer_begin(at).map(f32x4::splat);
+                ((behind - start) * inverse).fast_max(f32x4::ZERO).fast_min(f32x4::ONE) * hairs
+            };
+            layer(r, 0) + layer(g, 1) + layer(b, 2)
+        };
+        before(near) - far.map_or(f32x4::ZERO, before)
     }
 }
