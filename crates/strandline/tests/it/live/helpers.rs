@@ -30,7 +30,7 @@ pub fn waking() -> impl Fn() + Send {
 }
 
 /// Longest wait for one thing: twenty times what the slowest takes on two quiet cores.
-const PATIENCE: Duration = Duration::from_secs(180);
+pub const PATIENCE: Duration = Duration::from_secs(180);
 
 /// Waits for what is wanted.
 pub fn wait<T>(mut look: impl FnMut() -> Option<T>) -> T {

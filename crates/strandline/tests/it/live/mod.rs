@@ -6,6 +6,11 @@ mod helpers;
 mod project;
 mod timeline;
 
+use std::sync::{
+    Arc,
+    atomic::{AtomicBool, Ordering},
+    mpsc::channel,
+};
 use std::time::Duration;
 
 use strandline::{
@@ -14,7 +19,7 @@ use strandline::{
     scene::{MotionName, MotionSection},
 };
 
-use helpers::{error, next, scene, settled, still, wait, waking};
+use helpers::{PATIENCE, error, next, scene, settled, still, wait, waking};
 
 #[test]
 fn it_plays_and_stands_still_and_makes_single_steps() {
@@ -113,7 +118,9 @@ fn first_camera() -> Camera {
 fn it_may_be_left_at_any_moment_under_any_commands() {
     let mut random = strandline::math::Random::new(7, 0);
     for round in 0..12 {
-        let live = Live::new(scene(), waking()).unwrap();
+        let woken = Arc::new(AtomicBool::new(false));
+        let wakes = woken.clone();
+        let live = Live::new(scene(), move || wakes.store(true, Ordering::Relaxed)).unwrap();
         for _ in 0..round * 4 {
             let bits = random.bits();
             live.send(match bits >> 29 {
@@ -132,7 +139,22 @@ fn it_may_be_left_at_any_moment_under_any_commands() {
             });
             std::thread::sleep(Duration::from_micros((bits >> 20).into()));
         }
+        let events = live.take_events();
+        let failed =
+            events.iter().find(|event| matches!(event, LiveEvent::Error(..) | LiveEvent::NotLoaded(..)));
+        assert_eq!(failed, None, "round {round}");
+        // A test that hangs fails by the end of its process alone.
+        let (left, ended) = channel::<()>();
+        let watch = std::thread::spawn(move || {
+            if ended.recv_timeout(PATIENCE).is_err() {
+                std::process::abort();
+            }
+        });
         drop(live);
+        left.send(()).unwrap();
+        watch.join().unwrap();
+        // The threads have ended with it: none of them can wake the window any more.
+        assert_eq!(Arc::strong_count(&woken), 1, "round {round}: a thread is left behind");
     }
 }
 
