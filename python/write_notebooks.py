@@ -52,7 +52,7 @@ def run(notebook: dict[str, Any]) -> None:
 
 
 def outputs(source: str, names: dict[str, Any], number: int) -> list[dict[str, Any]]:
-    """What a cell prints, and its last expression as notebooks show it: a picture where it has one, else a text."""
+    """Text that a cell prints, and its last expression as notebooks show it: a picture where it has one, else a text."""
     tree = ast.parse(source)
     last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
     said, value = io.StringIO(), None

@@ -13,7 +13,7 @@ use strandline_render::{
 use strandline_sim::{Drive, Model, Settings, VolumeSettings};
 
 /// A style of few guides, each with 16 follow strands, and the inputs of its picture.
-struct Sitting {
+struct Shot {
     guides: Guides,
     /// The guides' points \[m\], world space.
     positions: Vec<Vec3Lanes>,
@@ -24,7 +24,7 @@ struct Sitting {
     lights: Vec<Light>,
 }
 
-impl Sitting {
+impl Shot {
     fn new(style: Style, points_per_strand: usize, camera: Camera) -> Self {
         let groom = StyleSettings { strand_count: 1_000, ..StyleSettings::new(style) }.grow().unwrap();
         let guides = Guides::resample(&groom, points_per_strand).unwrap();
@@ -91,14 +91,14 @@ impl Sitting {
 
     /// Checks the bounds on the pictures of two backends.
     fn check_on_gpu(self, gpu: &Gpu) {
-        let sitting = self.of_thesis();
+        let shot = self.of_thesis();
         // A mean of 0.0071 found on a software adapter, of 0.0100 on an H200.
-        compare(&sitting.on_gpu(gpu, &sized()), &sitting.on_cpu(&sized()), 0.012, 0.1).unwrap();
+        compare(&shot.on_gpu(gpu, &sized()), &shot.on_cpu(&sized()), 0.012, 0.1).unwrap();
     }
 }
 
 fn draw(style: Style, points_per_strand: usize, camera: Camera, settings: PictureSettings) -> Picture {
-    Sitting::new(style, points_per_strand, camera).on_cpu(&settings)
+    Shot::new(style, points_per_strand, camera).on_cpu(&settings)
 }
 
 /// Machines differ in the last bits of powers and exponentials: that moves single samples at
@@ -116,10 +116,10 @@ fn sized() -> PictureSettings {
 }
 
 fn check(name: &str, style: Style, points_per_strand: usize, camera: Camera) {
-    let sitting = Sitting::new(style, points_per_strand, camera);
-    assert_flip(&sitting.on_cpu(&sized()), name, MEAN, ONE_IN_A_HUNDRED);
+    let shot = Shot::new(style, points_per_strand, camera);
+    assert_flip(&shot.on_cpu(&sized()), name, MEAN, ONE_IN_A_HUNDRED);
     if let Some(gpu) = gpu() {
-        sitting.check_on_gpu(&gpu);
+        shot.check_on_gpu(&gpu);
     }
 }
 
@@ -148,10 +148,10 @@ law! {
     /// takes a software adapter minutes. A GPU's picture of its own state is compared with the CPU's of that state.
     fn long_hair_in_a_shake(on) {
         // Half a second: the head has turned and comes back, and the hair swings out.
-        let shaken = |steps| Sitting::new(Style::Long, 16, Camera::three_quarter()).shaken(on, steps);
-        let sitting = shaken(30);
+        let shaken = |steps| Shot::new(Style::Long, 16, Camera::three_quarter()).shaken(on, steps);
+        let shot = shaken(30);
         let On::Gpu(gpu) = on else {
-            assert_flip(&sitting.on_cpu(&sized()), "long_shaken", MEAN, ONE_IN_A_HUNDRED);
+            assert_flip(&shot.on_cpu(&sized()), "long_shaken", MEAN, ONE_IN_A_HUNDRED);
             // Hair that is simulated for a step less is noticed within the wider bounds too.
             let early = shaken(29).on_cpu(&sized());
             let golden = golden("long_shaken");
@@ -159,8 +159,8 @@ law! {
             return;
         };
         let golden = golden("long_shaken");
-        compare(&sitting.on_cpu(&sized()), &golden, SIMULATED_MEAN, SIMULATED_ONE_IN_A_HUNDRED).unwrap();
-        sitting.check_on_gpu(gpu);
+        compare(&shot.on_cpu(&sized()), &golden, SIMULATED_MEAN, SIMULATED_ONE_IN_A_HUNDRED).unwrap();
+        shot.check_on_gpu(gpu);
     }
 }
 
@@ -174,8 +174,7 @@ fn the_bounds_notice_a_shift_by_a_pixel_and_a_change_of_light() {
     let brighter = draw(Style::Bob, 12, Camera::side(), PictureSettings { exposure: 0.2, ..settings });
     assert!(compare(&brighter, &picture, MEAN, ONE_IN_A_HUNDRED).is_err());
     // Hair that is simulated for two steps more.
-    let shaken =
-        |steps| Sitting::new(Style::Bob, 12, Camera::side()).shaken(&On::Cpu, steps).on_cpu(&settings);
+    let shaken = |steps| Shot::new(Style::Bob, 12, Camera::side()).shaken(&On::Cpu, steps).on_cpu(&settings);
     assert!(compare(&shaken(14), &shaken(12), MEAN, ONE_IN_A_HUNDRED).is_err());
 }
 

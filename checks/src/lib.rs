@@ -25,7 +25,7 @@ pub fn gpu() -> Option<Gpu> {
 }
 
 /// As [`gpu`], for checks that take a software adapter long: it is theirs where [`in_full`] says so, and a line tells that
-/// they were left out where not. What holds on the CPU and stage by stage holds there too: these are laws of whole scenes.
+/// they were left out where not. Laws that hold on the CPU and stage by stage hold there too: these are laws of whole scenes.
 ///
 /// # Panics
 /// As [`gpu`].

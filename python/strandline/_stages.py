@@ -16,7 +16,7 @@ from .groom import Groom
 
 
 def told(read: Any, path: str, *more: Any) -> Any:
-    """What a function reads of a stage; what the library finds wrong names the file."""
+    """Reads something of a stage; errors of the library name the file."""
     try:
         return read(path, *more)
     except Error:

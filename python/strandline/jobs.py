@@ -34,7 +34,7 @@ COLUMNS = ("key", "state", "error", "strands", "points", "frames", "stretch_max"
 
 @dataclass(frozen=True)
 class Job:
-    """What one process does: plain data."""
+    """Work of one process: plain data."""
 
     scene: Scene
     sample: dict[str, Any]

@@ -565,7 +565,7 @@ class Colliders(TypedDict, total=False):
     """Solids beside the body."""
 
     shape: str
-    """What it is. Allowed: one of sphere, capsule."""
+    """Form of the solid. Allowed: one of sphere, capsule."""
 
     center: Sequence[float]
     """Centre of a sphere. Allowed: 3 numbers of -10,000 to 10,000 m."""

@@ -446,7 +446,7 @@ def _check_names(sections: Mapping[str, Any]) -> None:
 
 
 def _by_extra(scene: Scene, key: str, given: Any, suffixes: tuple[str, ...], read: Callable[[str], Any]) -> Any:
-    """What is given for a file of a scene, or what an extra reads of that file."""
+    """Returns the value given for a file of a scene, or the data that an extra reads of that file."""
     path = scene[key] if given is None else given
     if not isinstance(path, str | os.PathLike):
         return given

@@ -34,7 +34,7 @@ class Task:
 
 
 class OneProcess(types.ModuleType):
-    """What sweeps call of Ray, in this process. A task may be lost with its machine."""
+    """The functions of Ray that sweeps call, in this process. A task may be lost with its machine."""
 
     RayError = type("RayError", (Exception,), {})
     exceptions = types.SimpleNamespace(RayError=RayError)

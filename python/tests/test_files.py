@@ -90,7 +90,7 @@ def test_an_archive_that_takes_too_long_is_given_up(tmp_path, rich, monkeypatch)
     os.mkfifo(tmp_path / "a.abc")
 
     def load_endless():
-        """What is read of the file first is there, and then nothing comes."""
+        """Loads a file whose first bytes are there, and of which nothing more comes."""
         threading.Thread(target=lambda: (tmp_path / "a.abc").write_bytes(b"Ogawa\xff"), daemon=True).start()
         strandline.load(tmp_path / "a.abc")
 

@@ -29,7 +29,7 @@ pub fn check() -> bool {
         eprintln!("names: {problem}");
     }
     if problems.is_empty() {
-        println!("names: every stage has one name everywhere, and comments name their subject first");
+        println!("names: every stage has one name everywhere, and sentences name their subject first");
     }
     problems.is_empty()
 }

@@ -2,8 +2,8 @@
 
 /// Mesa's Vulkan layer for the choice of a device looks for a Wayland compositor, and the library that it asks
 /// prints two lines to standard error where `XDG_RUNTIME_DIR` is not set, as in containers and over ssh. There
-/// is no compositor then: the program restarts itself, once, with that layer disabled. What belongs
-/// to a process cannot be changed safely while it runs.
+/// is no compositor then: the program restarts itself, once, with that layer disabled. The
+/// environment of a process cannot be changed safely while it runs.
 #[cfg(target_os = "linux")]
 pub fn quiet_mesa() {
     use std::os::unix::process::CommandExt;

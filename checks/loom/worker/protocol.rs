@@ -11,7 +11,7 @@ use crate::thread::Asked;
 use crate::worker::{Gone, Work, Worker};
 
 /// Numbers pages, from 1 on.
-struct Scribe<P> {
+struct Writer<P> {
     last: u64,
     /// 1 and the number of pages, once it has ended.
     ended: Arc<AtomicU64>,
@@ -23,7 +23,7 @@ enum Order<P> {
     Panic,
 }
 
-impl<P: Page> Work for Scribe<P> {
+impl<P: Page> Work for Writer<P> {
     type Job = Order<P>;
     type Done = P;
 
@@ -35,21 +35,21 @@ impl<P: Page> Work for Scribe<P> {
     }
 }
 
-impl<P> Drop for Scribe<P> {
+impl<P> Drop for Writer<P> {
     fn drop(&mut self) {
         self.ended.store(1 + self.last, Relaxed);
     }
 }
 
-/// A scribe at work, and whether he has ended.
-fn scribe<P: Page>() -> (Worker<Scribe<P>>, Arc<AtomicU64>) {
+/// A writer at work, and a number that tells its end.
+fn writer<P: Page>() -> (Worker<Writer<P>>, Arc<AtomicU64>) {
     let ended = Arc::new(AtomicU64::new(0));
-    let scribe = Scribe { last: 0, ended: ended.clone(), pages: PhantomData };
-    (Worker::new(scribe).unwrap(), ended)
+    let writer = Writer { last: 0, ended: ended.clone(), pages: PhantomData };
+    (Worker::new(writer).unwrap(), ended)
 }
 
 /// Ends a worker and looks whether its thread has let go of everything.
-fn end<P: Page>(worker: Worker<Scribe<P>>, ended: &AtomicU64) {
+fn end<P: Page>(worker: Worker<Writer<P>>, ended: &AtomicU64) {
     drop(worker);
     assert!(ended.load(Relaxed) > 0, "the thread continues");
 }
@@ -57,7 +57,7 @@ fn end<P: Page>(worker: Worker<Scribe<P>>, ended: &AtomicU64) {
 #[test]
 fn jobs_started_ahead_come_back_whole_and_in_order() {
     explore(|| {
-        let (mut worker, ended) = scribe::<Moved>();
+        let (mut worker, ended) = writer::<Moved>();
         for started in 1..=2 {
             worker.start(Order::Write(Page::blank())).unwrap();
             assert_eq!(worker.started(), started);
@@ -75,7 +75,7 @@ fn jobs_started_ahead_come_back_whole_and_in_order() {
 #[test]
 fn a_page_is_read_while_the_next_is_written() {
     explore(|| {
-        let (mut worker, ended) = scribe::<Shared>();
+        let (mut worker, ended) = writer::<Shared>();
         let pages = [Shared::blank(), Shared::blank()];
         let next = |worker: &mut Worker<_>, number: usize| {
             worker.start(Order::Write(pages[number % 2].clone())).unwrap();
@@ -96,7 +96,7 @@ fn a_page_is_read_while_the_next_is_written() {
 fn it_ends_whatever_was_not_finished() {
     for (started, finished) in [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2)] {
         explore(move || {
-            let (mut worker, ended) = scribe::<Moved>();
+            let (mut worker, ended) = writer::<Moved>();
             for _ in 0..started {
                 worker.start(Order::Write(Page::blank())).unwrap();
             }
@@ -111,7 +111,7 @@ fn it_ends_whatever_was_not_finished() {
 #[test]
 fn a_panic_is_reported_and_it_ends_all_the_same() {
     explore(|| {
-        let (mut worker, ended) = scribe::<Moved>();
+        let (mut worker, ended) = writer::<Moved>();
         worker.start(Order::Write(Page::blank())).unwrap();
         worker.start(Order::Panic).unwrap();
         assert_eq!(worker.finish().unwrap().read(), 1);
@@ -128,7 +128,7 @@ fn a_job_that_waits_is_not_begun_when_it_ends() {
     let least = Arc::new(AtomicU64::new(u64::MAX));
     let seen = least.clone();
     explore(move || {
-        let (mut worker, ended) = scribe::<Moved>();
+        let (mut worker, ended) = writer::<Moved>();
         for _ in 0..2 {
             worker.start(Order::Write(Page::blank())).unwrap();
         }
@@ -144,7 +144,7 @@ fn a_job_that_waits_is_not_begun_when_it_ends() {
 #[should_panic = "a torn page"]
 fn a_page_that_is_not_waited_for_is_torn() {
     explore(|| {
-        let (mut worker, _) = scribe::<Shared>();
+        let (mut worker, _) = writer::<Shared>();
         let page = Shared::blank();
         worker.start(Order::Write(page.clone())).unwrap();
         page.read();

@@ -116,8 +116,8 @@ impl Player {
         })
     }
 
-    /// Writes every frame as it moves, from the next one on: see [`Player::close_out`]. What leaves is what the
-    /// scene draws: strands that guides carry too, with what the groom says of them.
+    /// Writes every frame as it moves, from the next one on: see [`Player::close_out`]. The file has the strands that the
+    /// scene draws, also those that guides carry, with the attributes of the groom.
     ///
     /// # Errors
     /// A name that no format has; a file or folder that cannot be written; more points than a file may have.

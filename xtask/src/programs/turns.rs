@@ -40,7 +40,7 @@ impl Ran {
 }
 
 /// Runs all programs with an environment: as many side by side as there are cores, then those that need the machine for
-/// themselves. What the others measure is their own memory and processor seconds, and what they wait for may take a minute.
+/// themselves. The others measure their own memory and processor seconds, and wait for up to a minute.
 pub fn run(mut programs: Vec<Program>, environment: &[(&str, &str)]) -> Vec<Ran> {
     order::sort(&mut programs);
     let (alone, together): (Vec<_>, Vec<_>) = programs.into_iter().partition(Program::is_alone);

@@ -69,7 +69,7 @@ impl Video {
         Ok(Ok(Self { child, pictures, taken, under_way: 0, said, hearing, patience, failed: None, file }))
     }
 
-    /// Hands a picture over when the one before was taken. What goes wrong is reported at the end.
+    /// Hands a picture over when the one before was taken. Errors are reported at the end.
     pub fn add(&mut self, picture: &Picture) {
         if self.pictures.is_none() {
             return;

@@ -217,7 +217,7 @@ impl Group for ColliderSection {
     type Rows = Row;
     const ROWS: Row = Row {
         name: "shape",
-        doc: "What it is.",
+        doc: "Form of the solid.",
         kind: Kind::Words(&[
             Word::new("sphere", SphereSection::TABLE.doc),
             Word::new("capsule", CapsuleSection::TABLE.doc),

@@ -1,5 +1,5 @@
-//! `.ply`: vertices with `strand` and `edge` elements, as hairutil has them, or bare ones. What a groom has
-//! else stands in further properties, which other readers skip.
+//! `.ply`: vertices with `strand` and `edge` elements, as hairutil has them, or bare ones. Other
+//! attributes of a groom are further properties, which other readers skip.
 
 mod writer;
 
