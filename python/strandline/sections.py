@@ -118,13 +118,10 @@ class Groom(TypedDict, total=False):
     above 0 they have died down before the first picture. Allowed: the path of a file."""
 
     pose: str
-    """A file with first positions and motion of the simulated points, as the window and `Hair::save_pose` save it:
-    tensors of the safetensors format, `positions` [m], `velocities` [m/s] and `corrections`, the part of the next
-    step's prediction that is added to them [m/s] (a file may lack it), world space, shape [strand, point, 3], and
-    `world_from_head`, a quaternion x, y, z, w and a translation [m]. A body that is more than a rigid head adds
-    `world_from_piece`, shape [piece, 7], `root_frames`, shape [strand, 7], or `skin`, shape [vertex, 3], head space
-    [m]. The film then begins with hair and body as they are there. Without it hair begins at rest. Allowed: the path
-    of a file."""
+    """A file with first positions and motion of the simulated points and of the body, as the window and
+    `Hair::save_pose` save it: a snapshot in a .npz (docs/cache.md), by itself or in a moving cache of guides. Files
+    of earlier builds, with tensors of the safetensors format, are read too. The film then begins with hair and body
+    as they are there. Without it hair begins at rest. Allowed: the path of a file."""
 
 
 class Ties(TypedDict, total=False):
@@ -688,8 +685,8 @@ class SimulationStrandsRods(TypedDict, total=False):
     solid is put out of it without friction. Allowed: 1 to 64."""
 
     tolerance: float
-    """A strand is solved when a Newton step turns none of its segments farther. What is left is a tenth to a
-    hundredth of it; hair that rubs comes to the same rest. Allowed: 1e-5 to 1 rad."""
+    """A strand is solved when a Newton step turns none of its segments farther. The angle that is left is a tenth to
+    a hundredth of it; hair that rubs comes to the same rest. Allowed: 1e-5 to 1 rad."""
 
 
 class SimulationStrandsConstrainSpringsStretch(TypedDict, total=False):
@@ -804,8 +801,8 @@ class SimulationStrands(TypedDict, total=False):
 
 
 class SimulationGroups(TypedDict, total=False):
-    """Hair of a group of the groom that is made of something else than the rest. What it does not give is that of
-    `[simulation.strands.rods]`."""
+    """Hair of a group of the groom that is made of something else than the rest. Values that it does not give are
+    those of `[simulation.strands.rods]`."""
 
     group: str
     """The group: its name in the groom, or its number. Allowed: a name."""
