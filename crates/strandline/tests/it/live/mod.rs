@@ -143,13 +143,16 @@ fn it_may_be_left_at_any_moment_under_any_commands() {
         let failed =
             events.iter().find(|event| matches!(event, LiveEvent::Error(..) | LiveEvent::NotLoaded(..)));
         assert_eq!(failed, None, "round {round}");
-        let (left, ended) = channel();
-        let leaves = std::thread::spawn(move || {
-            drop(live);
-            left.send(()).unwrap();
+        // A test that hangs fails by the end of its process alone.
+        let (left, ended) = channel::<()>();
+        let watch = std::thread::spawn(move || {
+            if ended.recv_timeout(PATIENCE).is_err() {
+                std::process::abort();
+            }
         });
-        ended.recv_timeout(PATIENCE).unwrap_or_else(|_| panic!("round {round} does not end"));
-        leaves.join().unwrap();
+        drop(live);
+        left.send(()).unwrap();
+        watch.join().unwrap();
         // The threads have ended with it: none of them can wake the window any more.
         assert_eq!(Arc::strong_count(&woken), 1, "round {round}: a thread is left behind");
     }
