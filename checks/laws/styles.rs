@@ -28,6 +28,12 @@ fn drawn(scene: &Scene) -> Vec<Vec<Vec3>> {
 
 /// The drawn strands of guides at places in world space and a body, shape `[strand][point]` \[m\].
 fn drawn_at(prepared: &Prepared, guides: &[Vec3Lanes], body: &BodyFrame) -> Vec<Vec<Vec3>> {
+    let strands = strands_at(prepared, guides, body);
+    strands.positions.chunks(strands.points_per_strand).map(<[Vec3]>::to_vec).collect()
+}
+
+/// The same with their widths.
+fn strands_at(prepared: &Prepared, guides: &[Vec3Lanes], body: &BodyFrame) -> Strands {
     let (mut frames, mut placed) = (Frames::default(), Vec::new());
     let (all, positions): (_, &[Vec3Lanes]) = match &prepared.bound {
         Some(bound) => {
@@ -45,8 +51,7 @@ fn drawn_at(prepared: &Prepared, guides: &[Vec3Lanes], body: &BodyFrame) -> Vec<
     if let Some(solids) = prepared.bound.as_ref().map(BoundStrands::solids) {
         keep_outside(&mut strands, &curves, all.points_per_strand(), &solids.placed(body));
     }
-    let each = level.segment_count(all.points_per_strand()) + 1;
-    strands.positions.chunks(each).map(<[Vec3]>::to_vec).collect()
+    strands
 }
 
 /// Distance \[m\] of a point from a segment.
@@ -169,6 +174,40 @@ fn drawn_strands_are_no_copies_of_others() {
     let found = likeness(&drawn(&tufts), 37);
     println!("tufts: {:.1} %", 100.0 * found);
     assert!(found > 0.05, "the comparison can fail: {found}");
+}
+
+#[test]
+fn hair_is_drawn_alike_beside_hair_of_the_face() {
+    let mut scene = scene(Style::Bob);
+    (scene.style.strand_count, scene.groom.bound) = (60, Some(480));
+    let alone = Prepared::new(&scene).unwrap();
+    (scene.style.beard, scene.style.brows, scene.style.lashes) = (true, true, true);
+    let all = Prepared::new(&scene).unwrap();
+    let [alone, shown] =
+        [&alone, &all].map(|prepared| strands_at(prepared, prepared.guides.positions(), &BodyFrame::REST));
+    let count = alone.positions.len();
+    assert!(shown.positions.len() > count, "{} points", shown.positions.len());
+    assert!(shown.positions[..count] == alone.positions && shown.widths[..count] == alone.widths);
+    // Strands that follow a lash lie in it, and none goes with hair of another part.
+    let bound = all.bound.as_ref().unwrap();
+    let groups = bound.strands().groups().unwrap();
+    let of_guides = all.guides.groups().unwrap();
+    for (group, influences) in groups.iter().zip(bound.binding().influences()) {
+        let followed = influences.iter().filter(|influence| influence.weight > 0.0);
+        assert!(followed.clone().all(|influence| of_guides[influence.guide as usize] == *group));
+    }
+    let each = shown.positions.len() / groups.len() / all.scene.look.follow_strands as usize;
+    let apart = |group: u32| {
+        let strands = (0..groups.len()).filter(|strand| groups[*strand] == group);
+        let apart = strands.map(|strand| {
+            let own = &shown.positions[strand * each * all.scene.look.follow_strands as usize..];
+            (0..each).map(|point| own[point].distance(own[each + point])).fold(0.0, f32::max)
+        });
+        apart.fold(0.0, f32::max)
+    };
+    let found = [1, 2, 3].map(apart);
+    println!("beard, brows, lashes: up to {found:?} m from their own strand");
+    assert!(found[2] < 3e-4 && found[1] < 3e-3 && found[0] > 2.0 * found[1], "{found:?} m");
 }
 
 /// Points of drawn strands in world space, how many of them lie inside the head or its ears, and the deepest \[m\].

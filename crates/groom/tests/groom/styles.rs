@@ -140,6 +140,54 @@ fn lashes_bend_away_from_the_eye_and_move_with_the_lids() {
 }
 
 #[test]
+fn beard_brows_and_lashes_grow_beside_hair_that_stays_as_it_is() {
+    let mannequin = Mannequin::new();
+    let plain = StyleSettings { strand_count: 400, ..StyleSettings::new(Style::Bob) };
+    let with = StyleSettings { beard: true, brows: true, lashes: true, ..plain.clone() };
+    let [alone, all] = [plain, with.clone()].map(|settings| settings.grow_hair(3200).unwrap());
+    assert!((0..3200).all(|strand| all.strand(strand) == alone.strand(strand)));
+    let (groups, guides) = (all.groups.as_ref().unwrap(), all.guide_flags.as_ref().unwrap());
+    let roots: Vec<_> = all.roots().collect();
+    // A quarter as many strands as of hair make a quarter as many hairs; brows and lashes are single strands, thinner.
+    for (number, name, count, hairs, guide_count) in [
+        (0, "hair", 3200, 100_000.0, 400),
+        (1, "beard", 800, 25_000.0, 50),
+        (2, "brows", 200, 1_500.0, 24),
+        (3, "lashes", 390, 550.0, 25),
+    ] {
+        assert_eq!(all.group_names[&number], name);
+        let strands: Vec<usize> =
+            (0..all.strand_count()).filter(|strand| groups[*strand] == number).collect();
+        assert_eq!(strands.len(), count, "{name}");
+        assert_eq!(strands.iter().filter(|strand| guides[**strand]).count(), guide_count, "{name}");
+        let width: f32 = strands.iter().map(|strand| all.widths.at(*strand, 0)).sum();
+        // Hair is thinner along its border.
+        assert!((width / 8e-5 / 3200.0 * 100_000.0 / hairs - 1.0).abs() < 0.2, "{name}: {width} m");
+        let eye = mannequin.eye_center();
+        let is_there = |root: &glam::Vec3| {
+            let mirrored = root.with_x(root.x.abs());
+            match name {
+                "beard" => (-0.14..-0.02).contains(&root.y) && root.z > -0.02,
+                "brows" => (-0.01..0.02).contains(&root.y) && root.z > 0.04 && mirrored.x < 0.06,
+                "lashes" => mirrored.distance(eye) < 0.018,
+                _ => true,
+            }
+        };
+        assert!(strands.iter().all(|strand| is_there(&roots[*strand])), "{name}");
+        if number > 0 {
+            let right = strands.iter().filter(|strand| roots[**strand].x < 0.0).count();
+            assert!(right * 3 > count && right * 3 < 2 * count, "{name}: {right} of {count} on the right");
+        }
+    }
+    assert_eq!(all.strand_count(), 4590);
+    assert_eq!(all.strand_count(), 3200 + with.strands_beside(3200));
+    // A style is no part of itself.
+    let bearded = StyleSettings { beard: true, brows: true, ..StyleSettings::new(Style::Beard) };
+    let names = StyleSettings { strand_count: 100, ..bearded }.grow().unwrap().group_names;
+    assert_eq!(names.into_values().collect::<Vec<_>>(), ["beard", "brows"]);
+}
+
+#[test]
 fn a_ponytail_hangs_together_behind_the_head() {
     let tips = tips(&grown(Style::Ponytail, 4));
     let middle = tips.iter().sum::<glam::Vec3>() / tips.len() as f32;
