@@ -14,12 +14,18 @@ const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../apps/viewer/ass
 /// Side of a small picture \[pixel\].
 const SMALL: u32 = 64;
 /// Pictures of styles with settings of their own: name, style, the settings, a heading and a sentence.
-const OTHERS: [(&str, Style, &[&str], [&str; 2]); 2] = [
+const OTHERS: [(&str, Style, &[&str], [&str; 2]); 3] = [
     (
         "fringe",
         Style::Bob,
         &["fringe = 0.05"],
         ["With a fringe", "Hair that falls from a parting or is tied may have a fringe: a bob to the brows."],
+    ),
+    (
+        "behind_ears",
+        Style::Wavy,
+        &["behind_ears = true"],
+        ["Behind the ears", "Hair that falls from a parting may be led behind the ears."],
     ),
     (
         "face",

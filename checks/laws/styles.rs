@@ -227,24 +227,30 @@ fn inside(mannequin: &Mannequin, strands: &[Vec<Vec3>], world_from_head: Pose) -
 #[test]
 fn drawn_strands_stay_out_of_the_head() {
     let mannequin = Mannequin::new();
-    for style in Style::ALL {
+    let led = Style::ALL.into_iter().filter(|style| style.is_parted()).map(|style| (style, true));
+    for (style, behind_ears) in Style::ALL.map(|style| (style, false)).into_iter().chain(led) {
         let mut scene = scene(style);
-        scene.style.strand_count = 400;
+        (scene.style.strand_count, scene.style.behind_ears) = (400, behind_ears);
         let (points, inside, deepest) = inside(&mannequin, &drawn(&scene), Pose::IDENTITY);
-        println!("{}: {inside} of {points} points inside, the deepest {:.2} mm", style.name(), 1e3 * deepest);
-        assert!(inside as f32 <= 1e-3 * points as f32 && deepest <= 1e-3, "{}", style.name());
+        let name =
+            if behind_ears { format!("{}, behind the ears", style.name()) } else { style.name().into() };
+        println!("{name}: {inside} of {points} points inside, the deepest {:.2} mm", 1e3 * deepest);
+        assert!(inside as f32 <= 1e-3 * points as f32 && deepest <= 1e-3, "{name}");
     }
 }
 
 #[test]
 fn drawn_strands_stay_out_of_the_head_that_shakes() {
     let mannequin = Mannequin::new();
-    let some = [Style::Bob, Style::Pixie, Style::Bun];
-    let styles = if in_full() { Style::ALL.to_vec() } else { some.to_vec() };
+    let some = [(Style::Bob, false), (Style::Pixie, false), (Style::Bun, false), (Style::Bob, true)];
+    let led = Style::ALL.into_iter().filter(|style| style.is_parted()).map(|style| (style, true));
+    let all = Style::ALL.into_iter().map(|style| (style, false)).chain(led);
+    let styles = if in_full() { all.collect() } else { some.to_vec() };
     let mut failed = Vec::new();
-    for style in styles {
+    for (style, behind_ears) in styles {
         let mut scene = scene(style);
-        scene.style.strand_count = if in_full() { 400 } else { 100 };
+        (scene.style.strand_count, scene.style.behind_ears) =
+            (if in_full() { 400 } else { 100 }, behind_ears);
         let prepared = Prepared::new(&scene).unwrap();
         let settings = prepared.scene.simulation.clone();
         let model = Model::new(&prepared.guides, &settings, prepared.colliders.clone()).unwrap();
@@ -264,7 +270,8 @@ fn drawn_strands_stay_out_of_the_head_that_shakes() {
             }
         }
         println!("{}: {within} of {points} points inside, the deepest {:.2} mm", style.name(), 1e3 * deepest);
-        failed.extend((within as f32 > 1e-3 * points as f32 || deepest > 1e-3).then_some(style));
+        let is_inside = within as f32 > 1e-3 * points as f32 || deepest > 1e-3;
+        failed.extend(is_inside.then_some((style, behind_ears)));
     }
     assert!(failed.is_empty(), "{failed:?}");
 }

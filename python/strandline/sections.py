@@ -203,6 +203,10 @@ class Style(TypedDict, total=False):
     """Way below the hairline at which hair from above the forehead is cut that falls over it; 0 leaves the forehead
     free, and 0.05 reaches the brows. For hair that falls from a parting or is tied. Allowed: 0 to 0.3 m."""
 
+    behind_ears: bool
+    """Leads hair from the front and the sides behind the ears. For hair that falls from a parting. Allowed: true or
+    false."""
+
     beard: bool
     """Grows a beard beside the hair: the group `beard`, as the style of that name. Allowed: true or false."""
 

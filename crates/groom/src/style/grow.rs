@@ -182,6 +182,7 @@ fn march(settings: &StyleSettings, skin: &Skin, index: usize, root: Root) -> Str
         (point, above) = uncovered(settings, skin, point + direction * STEP, least);
         direction = (point - before).normalize_or(direction);
         points.push(point);
+        combed.pass(point);
         if settings.style.is_tied() {
             let left = combed.tie().distance(point);
             combed.tied |= left < 1.2 * TIE_RADIUS;
@@ -223,7 +224,7 @@ fn style_length(settings: &StyleSettings, root: &Root) -> f32 {
 /// Distance \[m\] and direction away from the skin, ears smoothed over where hair falls across them, from those of the
 /// skin itself.
 fn covered(settings: &StyleSettings, point: Vec3, (distance, out): (f32, Vec3)) -> (f32, Vec3) {
-    if !settings.style.is_parted() {
+    if !settings.style.is_parted() || settings.leads_behind_ears() {
         return (distance, out);
     }
     let side = Vec3::new(point.x.signum(), 1.0, 1.0);

@@ -96,6 +96,25 @@ fn a_fringe_falls_over_the_forehead_to_its_length_and_leaves_other_hair_alone() 
 }
 
 #[test]
+fn hair_that_is_led_behind_the_ears_leaves_them_free() {
+    for style in Style::ALL.into_iter().filter(|style| style.is_parted()) {
+        let plain = StyleSettings { strand_count: 200, ..StyleSettings::new(style) };
+        let led = StyleSettings { behind_ears: true, ..plain.clone() };
+        // Beside an ear, whose rim reaches from 1 cm before to 2.4 cm behind the middle of the head.
+        let is_before = |point: &glam::Vec3| {
+            point.x.abs() > 0.07 && (-0.055..-0.010).contains(&point.y) && (-0.020..0.030).contains(&point.z)
+        };
+        let [before, after] = [plain, led].map(|settings| {
+            let groom = settings.grow_hair(1600).unwrap();
+            let hides = |strand: &usize| groom.strand(*strand).iter().any(is_before);
+            (0..1600).filter(hides).count()
+        });
+        println!("{style:?}: {before} strands hide the ears, {after} when led behind");
+        assert!(before > 160 && after * 12 < before, "{style:?}: {before}, {after}");
+    }
+}
+
+#[test]
 fn lashes_bend_away_from_the_eye_and_move_with_the_lids() {
     let settings = StyleSettings { strand_count: 390, ..StyleSettings::new(Style::Lashes) };
     let means = Eyes::ALL.map(|eyes| {

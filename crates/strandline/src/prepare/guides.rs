@@ -101,7 +101,11 @@ fn tie(scene: &Scene, guides: &mut Guides) -> Vec<String> {
 const ROOM: f32 = 1.8;
 
 /// Sets the spread of drawn strands about all strands, and about the guides where these are all.
-fn set_spreads(are_all: bool, spreads: Option<Vec<f32>>, [all, guides]: [&mut Guides; 2]) -> Result<(), Error> {
+fn set_spreads(
+    are_all: bool,
+    spreads: Option<Vec<f32>>,
+    [all, guides]: [&mut Guides; 2],
+) -> Result<(), Error> {
     if are_all {
         guides.set_spreads(spreads.clone())?;
     }
@@ -117,7 +121,8 @@ fn spread_grown(
 ) -> Result<(), Error> {
     let count = groom.strand_count();
     let face = Face::of(groom);
-    let of_face = |strands: &mut dyn Iterator<Item = usize>| face.as_ref().map_or(0, |face| face.beside(strands));
+    let of_face =
+        |strands: &mut dyn Iterator<Item = usize>| face.as_ref().map_or(0, |face| face.beside(strands));
     let beside = of_face(&mut (0..count));
     let guides_beside = chosen.map_or(beside, |chosen| of_face(&mut chosen.iter().copied()));
     let mut spreads = given;
