@@ -12,8 +12,6 @@ use super::{Style, StyleSettings};
 use crate::arcs::equal_arcs;
 use crate::{Groom, Widths};
 
-/// Name of the group of the hair that the parts grow beside.
-const HAIR: &str = "hair";
 /// Drawn strands of a part for each of its guides: short hair moves little.
 const EACH_GUIDE: usize = 16;
 /// Guides of a part at least: some on both sides of the face, and on both lids of an eye.
@@ -62,18 +60,12 @@ impl StyleSettings {
         f64::from(part.hairs()) / f64::from(self.style.hairs())
     }
 
-    /// Adds the parts to hair of `drawn` strands that has normals and coordinates of its roots.
+    /// Adds the parts to hair of `drawn` strands with groups, and normals and coordinates of its roots.
     pub(super) fn grow_beside(&self, mannequin: &Arc<Mannequin>, drawn: usize, groom: &mut Groom) {
-        let mut number = 0;
         for part in self.beside() {
-            if number == 0 {
-                groom.groups = Some(vec![0; groom.strand_count()]);
-                let own = if self.style.is_of_face() { self.style.name() } else { HAIR };
-                groom.group_names = [(0, own.to_owned())].into();
-                let count = groom.strand_count();
-                groom.guide_flags.get_or_insert_with(|| vec![true; count]);
-            }
-            number += 1;
+            let count = groom.strand_count();
+            groom.guide_flags.get_or_insert_with(|| vec![true; count]);
+            let number = groom.groups.iter().flatten().max().map_or(0, |last| last + 1);
             groom.append(self.grown_part(part, number, mannequin, drawn));
         }
     }
