@@ -191,7 +191,9 @@ fn hair_is_drawn_alike_beside_hair_of_the_face() {
     let apart = |(one, two): (&Vec3, &Vec3)| one.distance(*two);
     let off = alone.positions.iter().zip(&shown.positions).map(apart).fold(0.0, f32::max);
     assert!(off < 1e-6, "{off} m");
-    assert!(shown.widths[..count] == alone.widths);
+    let wider = |(one, two): (&f32, &f32)| (two / one - 1.0).abs();
+    let wider = alone.widths.iter().zip(&shown.widths).map(wider).fold(0.0, f32::max);
+    assert!(wider < 1e-4, "by a share of {wider}");
     // Strands that follow a lash lie in it, and none goes with hair of another part.
     let bound = all.bound.as_ref().unwrap();
     let (groups, of_guides) = (bound.strands().groups().unwrap(), all.guides.groups().unwrap());
@@ -203,16 +205,17 @@ fn hair_is_drawn_alike_beside_hair_of_the_face() {
     let of_each = all.scene.look.follow_strands as usize * shown.points_per_strand;
     let apart = |name: &str| {
         let strands = (0..groups.len()).filter(|strand| part(groups[*strand]) == name);
+        let roots = |strand: usize| [0, shown.points_per_strand].map(|next| strand * of_each + next);
         let apart = strands.map(|strand| {
-            let own = &shown.positions[strand * of_each..][..of_each];
-            let (first, next) = own.split_at(shown.points_per_strand);
-            first.iter().zip(next).map(|(one, two)| one.distance(*two)).fold(0.0, f32::max)
+            let [one, two] = roots(strand).map(|point| shown.positions[point]);
+            one.distance(two)
         });
         apart.fold(0.0, f32::max)
     };
     let found = ["beard", "brows", "lashes"].map(apart);
-    println!("beard, brows, lashes: up to {found:?} m from their own strand");
-    assert!(found[2] < 3e-4 && found[1] < 3e-3 && found[0] > 2.0 * found[1], "{found:?} m");
+    println!("beard, brows, lashes: roots up to {found:?} m from that of their own strand");
+    // Shares of 3.2 mm: .4 and .03.
+    assert!(found[2] < 1.5e-4 && found[1] < 1.5e-3 && found[0] > 2.0e-3, "{found:?} m");
 }
 
 /// Points of drawn strands in world space, how many of them lie inside the head or its ears, and the deepest \[m\].
