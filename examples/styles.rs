@@ -13,8 +13,30 @@ use strandline::{
 const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../apps/viewer/assets");
 /// Side of a small picture \[pixel\].
 const SMALL: u32 = 64;
-/// Fringe of the last picture \[m\].
-const FRINGE: f32 = 0.05;
+/// Pictures of styles with settings of their own: name, style, the settings, a heading and a sentence.
+const OTHERS: [(&str, Style, &[&str], [&str; 2]); 3] = [
+    (
+        "fringe",
+        Style::Bob,
+        &["fringe = 0.05"],
+        ["With a fringe", "Hair that falls from a parting or is tied may have a fringe: a bob to the brows."],
+    ),
+    (
+        "behind_ears",
+        Style::Wavy,
+        &["behind_ears = true"],
+        ["Behind the ears", "Hair that falls from a parting may be led behind the ears."],
+    ),
+    (
+        "face",
+        Style::Pixie,
+        &["beard = true", "brows = true", "lashes = true"],
+        [
+            "With hair of the face",
+            "A beard, brows and lashes grow beside any style, each a group of its name (`look.group`).",
+        ],
+    ),
+];
 /// A place before the eyes \[m\] and the place that is seen from there.
 const EYES: [Vec3; 2] = [Vec3::new(0.11, 0.0, 0.43), Vec3::new(0.008, -0.012, 0.085)];
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/styles.md");
@@ -35,13 +57,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     std::fs::create_dir_all(folder)?;
     let mut small = Vec::new();
     for style in Style::ALL {
-        small.push(drawn(style, 0.0, quick)?);
+        small.push(drawn(style, &[], quick)?);
         small[small.len() - 1].save(folder.join(format!("style_{}.png", style.name())))?;
     }
-    drawn(Style::Bob, FRINGE, quick)?.save(folder.join("style_fringe.png"))?;
+    for (name, style, settings, _) in OTHERS {
+        drawn(style, settings, quick)?.save(folder.join(format!("style_{name}.png")))?;
+    }
     let assets = if quick { folder } else { Path::new(ASSETS) };
     row(&small).save(assets.join("styles.jpg"))?;
-    let (mut hair, camera) = grown(Style::Bob, 0.0, quick)?;
+    let (mut hair, camera) = grown(Style::Bob, &[], quick)?;
     let mut looks = Vec::new();
     for preset in Preset::ALL.into_iter().step_by(if quick { 6 } else { 1 }) {
         let mut look = hair.look().clone();
@@ -52,9 +76,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// The picture of a style.
-fn drawn(style: Style, fringe: f32, quick: bool) -> Result<Picture, Box<dyn std::error::Error>> {
-    let (mut hair, camera) = grown(style, fringe, quick)?;
+/// The picture of a style with settings of its own.
+fn drawn(style: Style, settings: &[&str], quick: bool) -> Result<Picture, Box<dyn std::error::Error>> {
+    let (mut hair, camera) = grown(style, settings, quick)?;
     let look = hair.look().clone();
     let picture = hair.picture(&camera, &look)?;
     assert!(!picture.is_blank(), "{}", style.name());
@@ -62,10 +86,12 @@ fn drawn(style: Style, fringe: f32, quick: bool) -> Result<Picture, Box<dyn std:
 }
 
 /// A style on the built-in head, and the camera that sees the most of it.
-fn grown(style: Style, fringe: f32, quick: bool) -> Result<(Hair, Camera), strandline::Error> {
+fn grown(style: Style, settings: &[&str], quick: bool) -> Result<(Hair, Camera), strandline::Error> {
     let mut scene = Scene::demo();
     scene.set_style(style);
-    scene.style.fringe = fringe;
+    for (key, value) in settings.iter().filter_map(|setting| setting.split_once(" = ")) {
+        scene.set(&format!("style.{key}"), value)?;
+    }
     let side = if quick { 48 } else { 300 };
     (scene.picture.width, scene.picture.height) = (side, side);
     if quick {
@@ -121,11 +147,13 @@ fn page() -> Result<String, Box<dyn std::error::Error>> {
             write!(page, "\n```toml\n[style]\n{}\n```\n", own.join("\n"))?;
         }
     }
-    write!(
-        page,
-        "\n## With a fringe\n\n![fringe](gallery/style_fringe.png)\n\n\
-         Hair that falls from a parting or is tied may have a fringe: a bob to the brows.\n\n\
-         ```toml\n[style]\nstyle = \"bob\"\nfringe = {FRINGE}\n```\n"
-    )?;
+    for (name, style, settings, [heading, sentence]) in OTHERS {
+        let (style, settings) = (style.name(), settings.join("\n"));
+        write!(
+            page,
+            "\n## {heading}\n\n![{name}](gallery/style_{name}.png)\n\n{sentence}\n\n\
+             ```toml\n[style]\nstyle = \"{style}\"\n{settings}\n```\n"
+        )?;
+    }
     Ok(page)
 }

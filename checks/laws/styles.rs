@@ -28,6 +28,12 @@ fn drawn(scene: &Scene) -> Vec<Vec<Vec3>> {
 
 /// The drawn strands of guides at places in world space and a body, shape `[strand][point]` \[m\].
 fn drawn_at(prepared: &Prepared, guides: &[Vec3Lanes], body: &BodyFrame) -> Vec<Vec<Vec3>> {
+    let strands = strands_at(prepared, guides, body);
+    strands.positions.chunks(strands.points_per_strand).map(<[Vec3]>::to_vec).collect()
+}
+
+/// The same with their widths.
+fn strands_at(prepared: &Prepared, guides: &[Vec3Lanes], body: &BodyFrame) -> Strands {
     let (mut frames, mut placed) = (Frames::default(), Vec::new());
     let (all, positions): (_, &[Vec3Lanes]) = match &prepared.bound {
         Some(bound) => {
@@ -45,8 +51,7 @@ fn drawn_at(prepared: &Prepared, guides: &[Vec3Lanes], body: &BodyFrame) -> Vec<
     if let Some(solids) = prepared.bound.as_ref().map(BoundStrands::solids) {
         keep_outside(&mut strands, &curves, all.points_per_strand(), &solids.placed(body));
     }
-    let each = level.segment_count(all.points_per_strand()) + 1;
-    strands.positions.chunks(each).map(<[Vec3]>::to_vec).collect()
+    strands
 }
 
 /// Distance \[m\] of a point from a segment.
@@ -171,6 +176,48 @@ fn drawn_strands_are_no_copies_of_others() {
     assert!(found > 0.05, "the comparison can fail: {found}");
 }
 
+#[test]
+fn hair_is_drawn_alike_beside_hair_of_the_face() {
+    let mut scene = scene(Style::Bob);
+    (scene.style.strand_count, scene.groom.bound) = (60, Some(480));
+    let alone = Prepared::new(&scene).unwrap();
+    (scene.style.beard, scene.style.brows, scene.style.lashes) = (true, true, true);
+    let all = Prepared::new(&scene).unwrap();
+    let [alone, shown] =
+        [&alone, &all].map(|prepared| strands_at(prepared, prepared.guides.positions(), &BodyFrame::REST));
+    let count = alone.positions.len();
+    assert!(shown.positions.len() > count, "{} points", shown.positions.len());
+    // Guides of other groups have next to no weight.
+    let apart = |(one, two): (&Vec3, &Vec3)| one.distance(*two);
+    let off = alone.positions.iter().zip(&shown.positions).map(apart).fold(0.0, f32::max);
+    assert!(off < 1e-6, "{off} m");
+    let wider = |(one, two): (&f32, &f32)| (two / one - 1.0).abs();
+    let wider = alone.widths.iter().zip(&shown.widths).map(wider).fold(0.0, f32::max);
+    assert!(wider < 1e-4, "by a share of {wider}");
+    // Strands that follow a lash lie in it, and none goes with hair of another part.
+    let bound = all.bound.as_ref().unwrap();
+    let (groups, of_guides) = (bound.strands().groups().unwrap(), all.guides.groups().unwrap());
+    let part = |group: u32| bound.strands().group_names().get(&group).map_or("", String::as_str);
+    for (group, influences) in groups.iter().zip(bound.binding().influences()) {
+        let mut followed = influences.iter().filter(|influence| influence.weight > 1e-3);
+        assert!(followed.all(|influence| part(of_guides[influence.guide as usize]) == part(*group)));
+    }
+    let of_each = all.scene.look.follow_strands as usize * shown.points_per_strand;
+    let apart = |name: &str| {
+        let strands = (0..groups.len()).filter(|strand| part(groups[*strand]) == name);
+        let roots = |strand: usize| [0, shown.points_per_strand].map(|next| strand * of_each + next);
+        let apart = strands.map(|strand| {
+            let [one, two] = roots(strand).map(|point| shown.positions[point]);
+            one.distance(two)
+        });
+        apart.fold(0.0, f32::max)
+    };
+    let found = ["beard", "brows", "lashes"].map(apart);
+    println!("beard, brows, lashes: roots up to {found:?} m from that of their own strand");
+    // Shares of 3.2 mm: .4 and .03.
+    assert!(found[2] < 1.5e-4 && found[1] < 1.5e-3 && found[0] > 2.0e-3, "{found:?} m");
+}
+
 /// Points of drawn strands in world space, how many of them lie inside the head or its ears, and the deepest \[m\].
 fn inside(mannequin: &Mannequin, strands: &[Vec<Vec3>], world_from_head: Pose) -> (usize, usize, f32) {
     let head_from_world = world_from_head.inverse();
@@ -188,24 +235,30 @@ fn inside(mannequin: &Mannequin, strands: &[Vec<Vec3>], world_from_head: Pose) -
 #[test]
 fn drawn_strands_stay_out_of_the_head() {
     let mannequin = Mannequin::new();
-    for style in Style::ALL {
+    let led = Style::ALL.into_iter().filter(|style| style.is_parted()).map(|style| (style, true));
+    for (style, behind_ears) in Style::ALL.map(|style| (style, false)).into_iter().chain(led) {
         let mut scene = scene(style);
-        scene.style.strand_count = 400;
+        (scene.style.strand_count, scene.style.behind_ears) = (400, behind_ears);
         let (points, inside, deepest) = inside(&mannequin, &drawn(&scene), Pose::IDENTITY);
-        println!("{}: {inside} of {points} points inside, the deepest {:.2} mm", style.name(), 1e3 * deepest);
-        assert!(inside as f32 <= 1e-3 * points as f32 && deepest <= 1e-3, "{}", style.name());
+        let name =
+            if behind_ears { format!("{}, behind the ears", style.name()) } else { style.name().into() };
+        println!("{name}: {inside} of {points} points inside, the deepest {:.2} mm", 1e3 * deepest);
+        assert!(inside as f32 <= 1e-3 * points as f32 && deepest <= 1e-3, "{name}");
     }
 }
 
 #[test]
 fn drawn_strands_stay_out_of_the_head_that_shakes() {
     let mannequin = Mannequin::new();
-    let some = [Style::Bob, Style::Pixie, Style::Bun];
-    let styles = if in_full() { Style::ALL.to_vec() } else { some.to_vec() };
+    let some = [(Style::Bob, false), (Style::Pixie, false), (Style::Bun, false), (Style::Bob, true)];
+    let led = Style::ALL.into_iter().filter(|style| style.is_parted()).map(|style| (style, true));
+    let all = Style::ALL.into_iter().map(|style| (style, false)).chain(led);
+    let styles = if in_full() { all.collect() } else { some.to_vec() };
     let mut failed = Vec::new();
-    for style in styles {
+    for (style, behind_ears) in styles {
         let mut scene = scene(style);
-        scene.style.strand_count = if in_full() { 400 } else { 100 };
+        (scene.style.strand_count, scene.style.behind_ears) =
+            (if in_full() { 400 } else { 100 }, behind_ears);
         let prepared = Prepared::new(&scene).unwrap();
         let settings = prepared.scene.simulation.clone();
         let model = Model::new(&prepared.guides, &settings, prepared.colliders.clone()).unwrap();
@@ -225,7 +278,8 @@ fn drawn_strands_stay_out_of_the_head_that_shakes() {
             }
         }
         println!("{}: {within} of {points} points inside, the deepest {:.2} mm", style.name(), 1e3 * deepest);
-        failed.extend((within as f32 > 1e-3 * points as f32 || deepest > 1e-3).then_some(style));
+        let is_inside = within as f32 > 1e-3 * points as f32 || deepest > 1e-3;
+        failed.extend(is_inside.then_some((style, behind_ears)));
     }
     assert!(failed.is_empty(), "{failed:?}");
 }

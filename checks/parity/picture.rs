@@ -195,6 +195,8 @@ fn interpolate_agrees_in_place_and_width() {
         let mut both = Both::new(style, 12);
         // Farther away fewer follow strands are drawn, the last of them thinner.
         both.camera.position = both.camera.target + distance * Vec3::new(0.6, 0.2, 0.7).normalize();
+        // Hair of the face, which has hairs of its own, beside some bobs.
+        both.guides.set_beside(if style == Style::Bob { STRANDS / 4 } else { 0 }).unwrap();
         let positions = both.positions();
         let Some(renderer) = drawn_on_gpu(&both, &positions, false) else { return };
         let (_, strands, _) = both.on_cpu(&positions);

@@ -200,6 +200,19 @@ class Style(TypedDict, total=False):
     """Way below the hairline at which hair from above the forehead is cut that falls over it; 0 leaves the forehead
     free, and 0.05 reaches the brows. For hair that falls from a parting or is tied. Allowed: 0 to 0.3 m."""
 
+    behind_ears: bool
+    """Leads hair from the front and the sides behind the ears. For hair that falls from a parting. Allowed: true or
+    false."""
+
+    beard: bool
+    """Grows a beard beside the hair: the group `beard`, as the style of that name. Allowed: true or false."""
+
+    brows: bool
+    """Grows eyebrows beside the hair: the group `brows`. Allowed: true or false."""
+
+    lashes: bool
+    """Grows eyelashes beside the hair: the group `lashes`. Allowed: true or false."""
+
     swirl: float
     """Turn of the hair around the whorl. Allowed: -3 to 3 rad."""
 
@@ -1182,7 +1195,8 @@ class Look(TypedDict, total=False):
 
     hair_count: int
     """Hairs that the drawn strands stand for: each strand is widened so that together they cover as much as this many
-    hairs; 0 draws every strand as one hair. Allowed: 0 to 100,000,000."""
+    hairs; 0 draws every strand as one hair. Those of a beard, brows and lashes that grow beside the hair come on top.
+    Allowed: 0 to 100,000,000."""
 
     width_scale: float
     """Multiple of the groom's root diameters. Allowed: 0 to 1000."""

@@ -102,7 +102,8 @@ pub fn info(options: &InfoOptions) -> anyhow::Result<()> {
     if !report.attributes.is_empty() {
         print_line!("has       {}", report.attributes.join(", "));
     }
-    for (number, group) in report.groups.iter().take(MOST_GROUPS) {
+    let of_kind = |named: bool| report.groups.iter().filter(move |(_, group)| group.name.is_some() == named);
+    for (number, group) in of_kind(true).chain(of_kind(false)).take(MOST_GROUPS) {
         let name = group.name.as_deref().unwrap_or("without a name");
         print_line!("group     {number}: {name}, {}", counted(group.strands, "strand", "strands"));
     }

@@ -29,6 +29,8 @@ pub struct Guides {
     spreads: Option<Vec<f32>>,
     groups: Option<Vec<u32>>,
     group_names: BTreeMap<u32, String>,
+    /// Number of strands of the face beside hair, each as wide as it is.
+    beside: usize,
     /// Points that ties hold, as (strand, point).
     held: BTreeSet<(u32, u32)>,
 }
@@ -114,6 +116,7 @@ impl Guides {
             spreads: None,
             groups: groom.groups.clone(),
             group_names: groom.group_names.clone(),
+            beside: 0,
             held: BTreeSet::new(),
         })
     }
@@ -231,6 +234,24 @@ impl Guides {
     /// Names of the named groups.
     pub fn group_names(&self) -> &BTreeMap<u32, String> {
         &self.group_names
+    }
+
+    /// Number of strands that share the hairs of a look: all but those of the face beside hair.
+    pub fn hair_strands(&self) -> usize {
+        self.strand_count - self.beside
+    }
+
+    /// Sets how many of the strands are of the face beside hair, and stand for hairs of their own.
+    ///
+    /// # Errors
+    /// No strand is left that is hair.
+    pub fn set_beside(&mut self, count: usize) -> Result<(), GroomError> {
+        if count >= self.strand_count {
+            let expected = format!("fewer than {}, the number of strands", self.strand_count);
+            return Err(SettingError::new("strands beside hair", count, expected).into());
+        }
+        self.beside = count;
+        Ok(())
     }
 
     /// Sets the mass \[kg\] of every point, shape `[strand][point]`; with none the settings' mass per length

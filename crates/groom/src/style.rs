@@ -1,5 +1,6 @@
 //! Styles grown on the built-in mannequin.
 
+mod beside;
 mod comb;
 mod face;
 mod finish;

@@ -23,7 +23,8 @@ settings! {
         follow_strands: u32 = 16, in [1, 1024], slider [1, 64],
             more "denser hair of thinner strands, at a cost that grows with it";
         /// Hairs that the drawn strands stand for: each strand is widened so that together they cover as
-        /// much as this many hairs; 0 draws every strand as one hair.
+        /// much as this many hairs; 0 draws every strand as one hair. Those of a beard, brows and lashes that grow
+        /// beside the hair come on top.
         hair_count: u32 = 100_000, in [0, 100_000_000], slider [0, 200_000], more "wider strands";
         /// Multiple of the groom's root diameters.
         width_scale: f32 = 1.0, in [0.0, 1000.0], slider [0.1, 5.0], more "wider strands";

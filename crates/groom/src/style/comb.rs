@@ -29,6 +29,11 @@ const HAIRLINE: (f32, f32, f32) = (0.056, 0.085, 9.0);
 const SECTION: (f32, f32) = (0.055, 0.040);
 /// Strands rooted in front of this plane \[m\] fall before the shoulder.
 const FRONT_FROM: f32 = 0.012;
+/// Place behind an ear, on the side of positive x, to which hair is led that falls behind it \[m\]. Hair with roots farther
+/// back falls there by itself.
+const BEHIND_EAR: Vec3 = Vec3::new(0.072, 0.004, -0.042);
+/// Hair has passed an ear below this height and behind this place \[m\].
+const PAST_EAR: (f32, f32) = (0.020, -0.034);
 /// From this height \[m\] on the skull the hair no longer heeds the parting.
 const PARTED_ABOVE: f32 = 0.045;
 
@@ -63,6 +68,8 @@ pub struct Combed {
     pub place: Vec2,
     /// True if it has passed the tie.
     pub tied: bool,
+    /// True while it is on its way to the place behind the ear.
+    pub led: bool,
 }
 
 impl Combed {
@@ -71,7 +78,14 @@ impl Combed {
     pub fn new(root: Root, settings: &StyleSettings, place: Vec2, chance: f32) -> Self {
         let across = root.position.x - settings.parting + 0.002 * (chance - 0.5);
         let side = if across < 0.0 { -1.0 } else { 1.0 };
-        Self { root, side: if in_fringe(settings, &root) { 0.0 } else { side }, place, tied: false }
+        let side = if in_fringe(settings, &root) { 0.0 } else { side };
+        let led = settings.leads_behind_ears() && side != 0.0 && root.position.z > BEHIND_EAR.z;
+        Self { root, side, place, tied: false, led }
+    }
+
+    /// Takes note of the place \[m\] that the strand has reached.
+    pub fn pass(&mut self, point: Vec3) {
+        self.led &= point.y > PAST_EAR.0 || point.z > PAST_EAR.1;
     }
 
     /// True for a strand of the fringe.
@@ -174,7 +188,10 @@ impl Combed {
         let loose = Vec3::new(0.010 * self.place.x, -0.02, -0.03);
         let backward = place.along((self.root.position - WHORL) * spread + loose);
         let combed = backward.lerp(sideways, parted);
-        let down = (Vec3::NEG_Y + self.behind_ear(point)).normalize();
+        if self.led {
+            return combed * on_top + (self.to_ear(place) + self.off_face(point)) * (1.0 - 0.75 * on_top);
+        }
+        let down = (Vec3::NEG_Y + self.over_ear(point)).normalize();
         let mut free = down + self.off_face(point) + self.toward_curtain(point);
         free += self.turned_under(settings, point);
         let resting = smooth(0.040, 0.012, place.distance) * smooth(-0.125, -0.150, point.y);
@@ -182,8 +199,15 @@ impl Combed {
         combed * on_top + free * (1.0 - 0.75 * on_top)
     }
 
+    /// Along the skin to the place behind the ear; over the ear, not across it.
+    fn to_ear(&self, place: Place) -> Vec3 {
+        let way = BEHIND_EAR * Vec3::new(self.side, 1.0, 1.0) - place.point;
+        let before_ear = smooth(-0.03, 0.005, place.point.z) * smooth(0.030, 0.008, place.point.y);
+        place.along(way.normalize_or_zero() + Vec3::new(0.0, 1.4 * before_ear, -0.3 * before_ear))
+    }
+
     /// Hair from the side of the head is led back over the ear.
-    fn behind_ear(&self, point: Vec3) -> Vec3 {
+    fn over_ear(&self, point: Vec3) -> Vec3 {
         let level = smooth(-0.07, 0.0, point.y) * smooth(0.07, 0.02, point.y);
         Vec3::new(0.0, 0.0, -0.55 * level * smooth(-0.02, 0.05, point.z))
     }

@@ -21,11 +21,11 @@ const BROW: ([Vec2; 2], f32, f32) = ([Vec2::new(0.013, 0.000), Vec2::new(0.052, 
 /// Height \[m\] by which the border of a beard on the cheek is uneven.
 const UNEVEN: f32 = 0.0016;
 
-/// Grows strands of the face from `first` on.
-pub(super) fn strands(settings: &StyleSettings, skin: &Skin, first: usize, count: usize) -> Vec<Strand> {
+/// Grows strands of the face.
+pub(super) fn strands(settings: &StyleSettings, skin: &Skin, count: usize) -> Vec<Strand> {
     let strand = |index: usize| match settings.style {
-        Style::Lashes => lashes::strand(settings, skin, first + index),
-        _ => strand(settings, skin, first + index),
+        Style::Lashes => lashes::strand(settings, skin, index),
+        _ => strand(settings, skin, index),
     };
     (0..count).into_par_iter().map(strand).collect()
 }

@@ -44,7 +44,7 @@ impl StyleSettings {
     }
 
     /// Grows the style with `drawn` strands in all. The first `strand_count` are those of [`StyleSettings::grow`] and
-    /// marked as guides; the others lie between them, each with a curve of its own.
+    /// marked as guides; the others lie between them, each with a curve of its own. Strands beside the hair come on top.
     ///
     /// # Errors
     /// As [`StyleSettings::grow`].
@@ -53,20 +53,28 @@ impl StyleSettings {
     }
 
     /// As [`StyleSettings::grow_hair`], on a mannequin of another build or with closed eyes: beards and lashes differ there.
+    /// Behind the `drawn` strands follow those of [`StyleSettings::beside`], some of them marked as guides.
     ///
     /// # Errors
     /// As [`StyleSettings::grow`].
     pub fn grow_on(&self, mannequin: Arc<Mannequin>, drawn: usize) -> Result<Groom, GroomError> {
         self.validate()?;
         memory::check(&[self.memory(drawn)])?;
+        let mut groom = self.grow_own(&mannequin, drawn);
+        self.grow_beside(&mannequin, drawn.max(self.strand_count), &mut groom);
+        Ok(groom)
+    }
+
+    /// The hair alone.
+    fn grow_own(&self, mannequin: &Arc<Mannequin>, drawn: usize) -> Groom {
         let more = drawn.saturating_sub(self.strand_count);
         if self.style.is_of_face() {
-            let grown = face::strands(self, &Skin::new(mannequin), 0, self.strand_count.max(drawn));
+            let grown = face::strands(self, &Skin::new(mannequin.clone()), self.strand_count.max(drawn));
             let grown = grown.into_iter().map(|strand| Grown::new(strand, 0));
             let mut groom = groom(grown.collect(), self.strand_count);
             // Beside hair of other files it is named.
             groom.group_names = [(0, self.style.name().to_owned())].into();
-            return Ok(groom);
+            return groom;
         }
         let skin = Skin::new(mannequin.clone());
         let scalp = mannequin.scalp();
@@ -74,20 +82,20 @@ impl StyleSettings {
         let combed: Vec<Strand> = roots
             .into_par_iter()
             .enumerate()
-            .map(|(index, root)| march(self, &skin, index, beside_parting(self, &mannequin, root)))
+            .map(|(index, root)| march(self, &skin, index, beside_parting(self, mannequin, root)))
             .collect();
         let (guides, clumps) = finish::finish(self, &skin, &scalp, &combed);
         let mut grown: Vec<Grown> =
             guides.into_iter().zip(&clumps).map(|(strand, clump)| Grown::new(strand, *clump)).collect();
         if more > 0 {
-            let hair = hair::between(self, &mannequin, &scalp, &combed, more);
+            let hair = hair::between(self, mannequin, &scalp, &combed, more);
             let shaped = locks::shape(self, &skin, &combed, &clumps, &hair);
             grown.extend(hair.into_iter().zip(shaped).map(|(own, Shaped { points, width })| Grown {
                 width,
                 ..Grown::new(Strand { points, ..own.strand }, clumps[own.guide])
             }));
         }
-        Ok(groom(grown, self.strand_count))
+        groom(grown, self.strand_count)
     }
 }
 
@@ -128,9 +136,10 @@ impl StyleSettings {
     pub fn memory(&self, drawn: usize) -> Need {
         let marched = 2 * (self.length / STEP).ceil() as u64;
         let each = 12 * (marched + 2 * self.points() as u64) + 3 * size_of::<Strand>() as u64;
-        let count = drawn.max(self.strand_count);
+        let own = drawn.max(self.strand_count);
+        let count = own + self.strands_beside(own);
         let key = if drawn > self.strand_count { "groom.bound" } else { "style.strand_count" };
-        Need::new(format!("{key} = {count}"), count as u64, each)
+        Need::new(format!("{key} = {own}"), count as u64, each)
     }
 }
 
@@ -173,6 +182,7 @@ fn march(settings: &StyleSettings, skin: &Skin, index: usize, root: Root) -> Str
         (point, above) = uncovered(settings, skin, point + direction * STEP, least);
         direction = (point - before).normalize_or(direction);
         points.push(point);
+        combed.pass(point);
         if settings.style.is_tied() {
             let left = combed.tie().distance(point);
             combed.tied |= left < 1.2 * TIE_RADIUS;
@@ -214,7 +224,7 @@ fn style_length(settings: &StyleSettings, root: &Root) -> f32 {
 /// Distance \[m\] and direction away from the skin, ears smoothed over where hair falls across them, from those of the
 /// skin itself.
 fn covered(settings: &StyleSettings, point: Vec3, (distance, out): (f32, Vec3)) -> (f32, Vec3) {
-    if !settings.style.is_parted() {
+    if !settings.style.is_parted() || settings.leads_behind_ears() {
         return (distance, out);
     }
     let side = Vec3::new(point.x.signum(), 1.0, 1.0);

@@ -28,6 +28,14 @@ settings! {
         /// Way below the hairline at which hair from above the forehead is cut that falls over it; 0 leaves the forehead
         /// free, and 0.05 reaches the brows. For hair that falls from a parting or is tied.
         fringe: f32 = 0.0, in [0.0, 0.3] "m", slider [0.0, 0.1], more "a longer fringe";
+        /// Leads hair from the front and the sides behind the ears. For hair that falls from a parting.
+        behind_ears: bool = false;
+        /// Grows a beard beside the hair: the group `beard`, as the style of that name.
+        beard: bool = false;
+        /// Grows eyebrows beside the hair: the group `brows`.
+        brows: bool = false;
+        /// Grows eyelashes beside the hair: the group `lashes`.
+        lashes: bool = false;
         /// Turn of the hair around the whorl.
         swirl: f32 = 0.0, in [-3.0, 3.0] "rad", more "a tighter whorl";
         /// Thickness of the hair that lies on the skull.
@@ -304,6 +312,11 @@ impl StyleSettings {
         if let Some(style) = given.style {
             *self = Self::new(style);
         }
+    }
+
+    /// True for hair that is led behind the ears.
+    pub(super) fn leads_behind_ears(&self) -> bool {
+        self.behind_ears && self.style.is_parted()
     }
 
     /// True for hair that falls in curls; the coils of an afro are closer together than locks are.

@@ -96,6 +96,25 @@ fn a_fringe_falls_over_the_forehead_to_its_length_and_leaves_other_hair_alone() 
 }
 
 #[test]
+fn hair_that_is_led_behind_the_ears_leaves_them_free() {
+    for style in Style::ALL.into_iter().filter(|style| style.is_parted()) {
+        let plain = StyleSettings { strand_count: 200, ..StyleSettings::new(style) };
+        let led = StyleSettings { behind_ears: true, ..plain.clone() };
+        // Beside an ear, whose rim reaches from 1 cm before to 2.4 cm behind the middle of the head.
+        let is_before = |point: &glam::Vec3| {
+            point.x.abs() > 0.07 && (-0.055..-0.010).contains(&point.y) && (-0.020..0.030).contains(&point.z)
+        };
+        let [before, after] = [plain, led].map(|settings| {
+            let groom = settings.grow_hair(1600).unwrap();
+            let hides = |strand: &usize| groom.strand(*strand).iter().any(is_before);
+            (0..1600).filter(hides).count()
+        });
+        println!("{style:?}: {before} strands hide the ears, {after} when led behind");
+        assert!(before > 160 && after * 12 < before, "{style:?}: {before}, {after}");
+    }
+}
+
+#[test]
 fn lashes_bend_away_from_the_eye_and_move_with_the_lids() {
     let settings = StyleSettings { strand_count: 390, ..StyleSettings::new(Style::Lashes) };
     let means = Eyes::ALL.map(|eyes| {
@@ -137,6 +156,54 @@ fn lashes_bend_away_from_the_eye_and_move_with_the_lids() {
             assert!(most - least > 0.014, "{side} {is_upper}: from {least} to {most} m of 2.8 cm");
         }
     }
+}
+
+#[test]
+fn beard_brows_and_lashes_grow_beside_hair_that_stays_as_it_is() {
+    let mannequin = Mannequin::new();
+    let plain = StyleSettings { strand_count: 400, ..StyleSettings::new(Style::Bob) };
+    let with = StyleSettings { beard: true, brows: true, lashes: true, ..plain.clone() };
+    let [alone, all] = [plain, with.clone()].map(|settings| settings.grow_hair(3200).unwrap());
+    assert!((0..3200).all(|strand| all.strand(strand) == alone.strand(strand)));
+    assert!(all.groups.as_ref().unwrap()[..3200] == alone.groups.unwrap());
+    let (groups, guides) = (all.groups.as_ref().unwrap(), all.guide_flags.as_ref().unwrap());
+    let roots: Vec<_> = all.roots().collect();
+    // A quarter as many strands as of hair make a quarter as many hairs; brows and lashes are single strands, thinner.
+    for (name, count, hairs, guide_count) in [
+        ("", 3200, 100_000.0, 400),
+        ("beard", 800, 25_000.0, 50),
+        ("brows", 200, 1_500.0, 24),
+        ("lashes", 390, 550.0, 25),
+    ] {
+        let named = |strand: &usize| all.group_names.get(&groups[*strand]).map_or("", String::as_str);
+        let strands: Vec<usize> = (0..all.strand_count()).filter(|strand| named(strand) == name).collect();
+        assert_eq!(strands.len(), count, "{name}");
+        assert_eq!(strands.iter().filter(|strand| guides[**strand]).count(), guide_count, "{name}");
+        let width: f32 = strands.iter().map(|strand| all.widths.at(*strand, 0)).sum();
+        // Hair is thinner along its border.
+        assert!((width / 8e-5 / 3200.0 * 100_000.0 / hairs - 1.0).abs() < 0.2, "{name}: {width} m");
+        let eye = mannequin.eye_center();
+        let is_there = |root: &glam::Vec3| {
+            let mirrored = root.with_x(root.x.abs());
+            match name {
+                "beard" => (-0.14..-0.02).contains(&root.y) && root.z > -0.02,
+                "brows" => (-0.01..0.02).contains(&root.y) && root.z > 0.04 && mirrored.x < 0.06,
+                "lashes" => mirrored.distance(eye) < 0.018,
+                _ => true,
+            }
+        };
+        assert!(strands.iter().all(|strand| is_there(&roots[*strand])), "{name}");
+        if !name.is_empty() {
+            let right = strands.iter().filter(|strand| roots[**strand].x < 0.0).count();
+            assert!(right * 3 > count && right * 3 < 2 * count, "{name}: {right} of {count} on the right");
+        }
+    }
+    assert_eq!(all.strand_count(), 4590);
+    assert_eq!(all.strand_count(), 3200 + with.strands_beside(3200));
+    // A style is no part of itself.
+    let bearded = StyleSettings { beard: true, brows: true, ..StyleSettings::new(Style::Beard) };
+    let names = StyleSettings { strand_count: 100, ..bearded }.grow().unwrap().group_names;
+    assert_eq!(names.into_values().collect::<Vec<_>>(), ["beard", "brows"]);
 }
 
 #[test]

@@ -21,6 +21,7 @@ impl GpuRenderer {
             level: input.level(self.bounds, settings.height, &self.guides),
             share,
             guide_count: self.guides.strand_count(),
+            hair_strands: self.guides.hair_strands(),
             guide_points: self.guides.points_per_strand(),
             vertex_count: self.skin.vertex_count().unwrap_or(0),
             triangle_count: self.skin.corners().len() / 3,

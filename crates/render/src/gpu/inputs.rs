@@ -232,7 +232,7 @@ impl Frame {
             near: input.camera.near,
             background_top: settings.background.top.to_array(),
             background_bottom: settings.background.bottom.to_array(),
-            widening: crate::strands::clump::widening(input.look, scene.guide_count),
+            widening: crate::strands::clump::widening(input.look, scene.hair_strands),
             guide_count: scene.guide_count as u32,
             guide_points: scene.guide_points as u32,
             curve_points: scene.curve_points() as u32,

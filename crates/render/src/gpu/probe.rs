@@ -147,6 +147,7 @@ impl GpuRenderer {
         let scene = Scene {
             level: DetailLevel::full(1, 1),
             guide_count: strands.strand_count,
+            hair_strands: strands.strand_count,
             guide_points: strands.points_per_strand,
             ..self.scene(input, &settings, 1.0)
         };

@@ -11,6 +11,8 @@ pub(super) struct Scene<'a> {
     pub level: DetailLevel,
     pub share: f32,
     pub guide_count: usize,
+    /// Number of guides that share the hairs of the look.
+    pub hair_strands: usize,
     pub guide_points: usize,
     pub vertex_count: usize,
     pub triangle_count: usize,

@@ -12,6 +12,7 @@ use crate::{
 };
 
 use super::{
+    face::Face,
     framing::{bounds, head_motion},
     loading::Loading,
     looks, memory, moving,
@@ -37,14 +38,12 @@ pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
         Some(chosen) => resampled(&groom.select(chosen))?,
     };
     let is_grown = scene.groom.file.is_none() || loading.is_grown;
-    let mut spreads = looks::spreads(&scene.look, groom)?;
-    if is_grown && simulated < groom.strand_count() {
-        spreads = Some(narrowed(spreads, simulated, groom.strand_count()));
+    let spreads = looks::spreads(&scene.look, groom)?;
+    if is_grown {
+        spread_grown(groom, chosen.as_deref(), spreads, [&mut all, &mut guides])?;
+    } else {
+        set_spreads(chosen.is_none(), spreads, [&mut all, &mut guides])?;
     }
-    if chosen.is_none() {
-        guides.set_spreads(spreads.clone())?;
-    }
-    all.set_spreads(spreads)?;
     if let Some(file) = &scene.groom.attributes {
         attributes::load(&scene.path(file), &mut guides)?;
     }
@@ -102,12 +101,49 @@ fn tie(scene: &Scene, guides: &mut Guides) -> Vec<String> {
 /// them.
 const ROOM: f32 = 1.8;
 
+/// Sets the spread of drawn strands about all strands, and about the guides where these are all.
+fn set_spreads(
+    are_all: bool,
+    spreads: Option<Vec<f32>>,
+    [all, guides]: [&mut Guides; 2],
+) -> Result<(), Error> {
+    if are_all {
+        guides.set_spreads(spreads.clone())?;
+    }
+    Ok(all.set_spreads(spreads)?)
+}
+
+/// Sets the spread of drawn strands of a style, and how many strands grow beside its hair.
+fn spread_grown(
+    groom: &Groom,
+    chosen: Option<&[usize]>,
+    given: Option<Vec<f32>>,
+    [all, guides]: [&mut Guides; 2],
+) -> Result<(), Error> {
+    let count = groom.strand_count();
+    let face = Face::of(groom);
+    let of_face =
+        |strands: &mut dyn Iterator<Item = usize>| face.as_ref().map_or(0, |face| face.beside(strands));
+    let beside = of_face(&mut (0..count));
+    let guides_beside = chosen.map_or(beside, |chosen| of_face(&mut chosen.iter().copied()));
+    let mut spreads = given;
+    if let Some(chosen) = chosen {
+        let counts = [chosen.len() - guides_beside, count - beside];
+        spreads = Some(narrowed(spreads.unwrap_or_else(|| vec![1.0; count]), counts));
+    }
+    if let Some(face) = &face {
+        spreads = Some(face.spreads(spreads));
+    }
+    all.set_beside(beside)?;
+    guides.set_beside(guides_beside)?;
+    set_spreads(chosen.is_none(), spreads, [all, guides])
+}
+
 /// Factors of the spread of drawn strands: between the many strands of a style less room is left than between its
 /// guides.
-fn narrowed(spreads: Option<Vec<f32>>, simulated: usize, grown: usize) -> Vec<f32> {
+fn narrowed(spreads: Vec<f32>, [simulated, grown]: [usize; 2]) -> Vec<f32> {
     let share = ROOM * (simulated as f32 / grown as f32).sqrt();
-    let own = |spreads: Vec<f32>| spreads.into_iter().map(|spread| share * spread).collect();
-    spreads.map_or_else(|| vec![share; grown], own)
+    spreads.into_iter().map(|spread| share * spread).collect()
 }
 
 /// Strands as they are simulated and drawn, which those of a file are already where they are `grown`; roots without a

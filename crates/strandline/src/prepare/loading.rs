@@ -79,6 +79,7 @@ impl<'a> Loading<'a> {
         sources.check(scene)?;
         if scene.groom.file.is_none() {
             let drawn = scene.grown_strands();
+            let drawn = drawn + scene.style.strands_beside(drawn);
             memory::check(scene, scene.style.strand_count, drawn)?;
         }
         Ok(Self {

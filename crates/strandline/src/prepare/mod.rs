@@ -4,6 +4,7 @@ mod cover;
 mod doubts;
 mod ends;
 mod evidence;
+mod face;
 mod fit;
 mod foreign;
 mod framing;
@@ -188,7 +189,7 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
         }
     };
     let shape = [guides.strand_count(), guides.points_per_strand()];
-    let drawn = bound.as_ref().map_or(&guides, BoundStrands::strands).strand_count();
+    let drawn = bound.as_ref().map_or(&guides, BoundStrands::strands).hair_strands();
     if let Some(fewer) = scene.look.fewer_hairs(drawn) {
         notes.push(format!(
             "look.hair_count x look.width_scale would take long and hide all else: strands cover as much as {fewer:.0} hairs"

@@ -42,22 +42,16 @@ impl Scene {
     /// (`level_of_detail.segments_per_span`) and 16 drawn strands for each guide (`look.follow_strands`). A file that
     /// names a style and none of these gets the same.
     pub fn set_style(&mut self, style: Style) {
-        let (seed, strand_count) = (self.style.seed, self.style.strand_count);
+        let StyleSettings { seed, strand_count, beard, brows, lashes, .. } = self.style;
         self.groom.file = None;
         self.groom.parts.clear();
         self.begin_at_rest();
-        self.style = StyleSettings { seed, strand_count, ..StyleSettings::new(style) };
+        self.style = StyleSettings { seed, strand_count, beard, brows, lashes, ..StyleSettings::new(style) };
         self.groom.points_per_strand = style.points_per_strand();
         self.level_of_detail.segments_per_span = segments_per_span(self.groom.points_per_strand);
-        // Hairs of a face are fewer than those of a head, and 390 lashes as thick as 550 hairs; other numbers are the user's.
-        let hairs = |style| match style {
-            Style::Beard => 25_000,
-            Style::Brows => 1_500,
-            Style::Lashes => 550,
-            _ => 100_000,
-        };
-        if Style::ALL.into_iter().any(|style| hairs(style) == self.look.hair_count) {
-            self.look.hair_count = hairs(style);
+        // Hairs of a face are fewer than those of a head; other numbers are the user's.
+        if Style::ALL.into_iter().any(|style| style.hairs() == self.look.hair_count) {
+            self.look.hair_count = style.hairs();
         }
         self.look.follow_strands = filling(strand_count, self.groom.bound);
     }

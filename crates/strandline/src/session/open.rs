@@ -29,7 +29,7 @@ use crate::{
 
 /// Hairs that a guide of a scene stands for in the air: its share of those that the look has; `None` without a number.
 fn hairs_of_a_guide(scene: &Scene, guides: &Guides) -> Option<f32> {
-    let hairs = scene.look.hair_count as f32 / guides.strand_count() as f32;
+    let hairs = scene.look.hair_count as f32 / guides.hair_strands() as f32;
     (hairs > 0.0).then_some(hairs.clamp(1.0, 1e6))
 }
 

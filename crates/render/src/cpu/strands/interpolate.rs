@@ -43,7 +43,7 @@ pub fn interpolate(
         look,
         level,
         tapers: tapers(&curves.parameters, &look.clump),
-        widening: widening(look, guides.strand_count()),
+        widening: widening(look, guides.hair_strands()),
     };
     let size = strands_per_guide * points_per_strand;
     out.positions
