@@ -4,6 +4,7 @@ mod bound;
 mod cells;
 mod channels;
 mod chiang;
+mod contact;
 mod depth;
 mod draw;
 mod heads;
