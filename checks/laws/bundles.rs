@@ -1,8 +1,8 @@
-//! Strands among strands: bundles that lie on bundles, a strand on rails. On the CPU, the only backend that has contacts.
+//! Strands among strands: bundles that lie on bundles, a strand on rails.
 
 use glam::Vec3;
 use strandline_body::Pose;
-use strandline_checks::{On, Rig};
+use strandline_checks::{On, Rig, law};
 use strandline_groom::{Groom, Guides, LANES, RestShape};
 use strandline_sim::rods::Rest;
 use strandline_sim::{ContactReport, CpuRunner, Drag, Drive, Model, Settings, State, VolumeSettings};
@@ -59,8 +59,8 @@ fn middle(state: &State, strand: usize) -> f32 {
 }
 
 /// Contacts, largest speed \[m/s\] and heights of all middles \[m\] after a number of steps.
-fn rested(above: f32, settings: &Settings, steps: usize) -> (Option<ContactReport>, f32, Vec<f32>) {
-    let mut rig = Rig::new(&On::Cpu, bundles(above, settings));
+fn rested(on: &On, above: f32, settings: &Settings, steps: usize) -> (Option<ContactReport>, f32, Vec<f32>) {
+    let mut rig = Rig::new(on, bundles(above, settings));
     let report = rig.steps(&vec![Drive::default(); steps]).pop().unwrap();
     let state = rig.state();
     let heights = (0..2 * SIDE * SIDE).map(|strand| middle(state, strand)).collect();
@@ -74,19 +74,25 @@ fn passed(heights: &[f32]) -> usize {
     upper.iter().filter(|height| **height < lowest).count()
 }
 
-#[test]
-fn a_bundle_rests_on_the_one_beneath_it() {
-    // Laid on it, and let fall by a centimetre and a half.
-    for above in [0.0, 0.015] {
-        let (contacts, speed, heights) = rested(above, &settings(), 150);
-        let contacts = contacts.unwrap();
-        assert_eq!(passed(&heights), 0, "{above}: {heights:?}");
-        // A tenth of a radius; 0.01 mm were found.
-        assert!(contacts.deepest < 0.1 * RADIUS && contacts.crossed == 0, "{above}: {contacts:?}");
-        assert!(contacts.pairs > 20 && speed < 5e-4, "{above}: {contacts:?}, {speed} m/s");
+law! {
+    fn a_bundle_rests_on_the_one_beneath_it(on) {
+        // Laid on it, and let fall by a centimetre and a half.
+        for above in on.short(&[0.0_f32, 0.015][..], &[0.0]).iter().copied() {
+            let (contacts, speed, heights) = rested(on, above, &settings(), 150);
+            let contacts = contacts.unwrap();
+            assert_eq!(passed(&heights), 0, "{above}: {heights:?}");
+            // A tenth of a radius; 0.01 mm were found.
+            assert!(contacts.deepest < 0.1 * RADIUS && contacts.crossed == 0, "{above}: {contacts:?}");
+            assert!(contacts.pairs > 20 && speed < 5e-4, "{above}: {contacts:?}, {speed} m/s");
+        }
     }
-    let (contacts, _, heights) = rested(0.0, &Settings { contact: Default::default(), ..settings() }, 150);
-    assert!(contacts.is_none() && passed(&heights) == SIDE * SIDE, "without contact all fall through");
+}
+
+#[test]
+fn without_contact_a_bundle_falls_through_the_one_beneath_it() {
+    let settings = Settings { contact: Default::default(), ..settings() };
+    let (contacts, _, heights) = rested(&On::Cpu, 0.0, &settings, 150);
+    assert!(contacts.is_none() && passed(&heights) == SIDE * SIDE, "{heights:?}");
 }
 
 #[test]
@@ -108,7 +114,7 @@ fn contacts_do_not_depend_on_when_near_segments_were_looked_for() {
 }
 
 /// Way \[m\] in half a second of a loose strand on two rails that do not move, under gravity with a slope along them.
-fn slid(slope: f32) -> f32 {
+fn slid(on: &On, slope: f32) -> f32 {
     let mut settings = Settings { gravity: Vec3::new(9.81 * slope, -9.81, 0.0), ..settings() };
     settings.strands.rods.rubbing = 0.0;
     let mut groom = Groom::empty(8e-5);
@@ -119,20 +125,21 @@ fn slid(slope: f32) -> f32 {
     let guides = Guides::resample(&groom, 12).unwrap();
     let rest = RestShape::new(&guides, settings.line_density());
     let model = Model::with_rest(&guides, rest, |strand, _| strand < 2, &settings, Vec::new()).unwrap();
-    let mut rig = Rig::new(&On::Cpu, model);
+    let mut rig = Rig::new(on, model);
     rig.steps(&vec![Drive::default(); 30]);
     let place = |state: &State| (0..12).map(|point| state.positions[point].get(2).x).sum::<f32>() / 12.0;
     place(rig.state())
 }
 
-#[test]
-fn a_strand_on_rails_slides_from_the_slope_of_friction_on() {
-    let contact = settings().contact;
-    let holds = slid(contact.friction - 0.015);
-    assert!(holds.abs() < 2e-3, "it slides by {holds} m");
-    let slope = contact.friction + 0.1;
-    let expected = 0.125 * 9.81 * (slope - contact.sliding_friction);
-    let slides = slid(slope);
-    // 2 % of it are the steps of a fall from rest, and it comes to press within the first.
-    assert!((slides / expected - 1.0).abs() < 0.1, "{slides} m, expected {expected}");
+law! {
+    fn a_strand_on_rails_slides_from_the_slope_of_friction_on(on) {
+        let contact = settings().contact;
+        let holds = slid(on, contact.friction - 0.015);
+        assert!(holds.abs() < 2e-3, "it slides by {holds} m");
+        let slope = contact.friction + 0.1;
+        let expected = 0.125 * 9.81 * (slope - contact.sliding_friction);
+        let slides = slid(on, slope);
+        // 2 % of it are the steps of a fall from rest, and it comes to press within the first.
+        assert!((slides / expected - 1.0).abs() < 0.1, "{slides} m, expected {expected}");
+    }
 }

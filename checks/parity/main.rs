@@ -3,6 +3,7 @@
 mod bound;
 mod channels;
 mod chiang;
+mod contact;
 mod depth;
 mod draw;
 mod heads;

@@ -873,12 +873,12 @@ class SimulationGroups(TypedDict, total=False):
 
 
 class SimulationContact(TypedDict, total=False):
-    """Contact of strands with each other, of rods on the CPU. A guide is the wisp of the hairs that it stands for: a
-    chain of capsules of radius r sqrt(hairs / `strands.rods.packing`), at most half of the room to the nearest strand
-    at rest, so that nothing presses at rest."""
+    """Contact of strands with each other, of rods. A guide is the wisp of the hairs that it stands for: a chain of
+    capsules of radius r sqrt(hairs / `strands.rods.packing`), at most half of the room to the nearest strand at rest,
+    so that nothing presses at rest."""
 
     enabled: bool
-    """Strands push each other apart and rub. A GPU refuses it. Allowed: true or false."""
+    """Strands push each other apart and rub. Allowed: true or false."""
 
     hairs: float
     """Hairs that a guide stands for. Without it those of the look over the guides in a scene, else
@@ -891,8 +891,8 @@ class SimulationContact(TypedDict, total=False):
     """Coulomb coefficient of strands that slide, no more than `friction`. Allowed: 0 to 10."""
 
     rounds: int
-    """Rounds of each part of a step in which strands and forces between them answer each other. Allowed: 1 to
-    1000."""
+    """Rounds of each part of a step in which strands and forces between them answer each other. A GPU takes at most
+    1000 in a step. Allowed: 1 to 1000."""
 
 
 class SimulationVolume(TypedDict, total=False):
@@ -955,7 +955,7 @@ class Simulation(TypedDict, total=False):
     share of Young's modulus, or follows from Poisson's ratio where that is given. Allowed: 0 to 1024."""
 
     contact: SimulationContact
-    """Contact of strands with each other, of rods on the CPU."""
+    """Contact of strands with each other, of rods."""
 
     volume: SimulationVolume
     """The fluid volume, which keeps the density of hair [Chen2011 §4.2, McAdams2009]."""

@@ -12,9 +12,9 @@ const POINT_BYTES: u64 = 296;
 const ROD_BYTES: u64 = 204;
 /// Further bytes of a point of a rod where hair and solids hold back the air: its velocity there.
 const AIR_BYTES: u64 = 12;
-/// Further bytes of a point of a rod among strands that push each other: its solve, kept from part to part with its
-/// factors twice, its ways, and pairs of dense hair.
-const CONTACT_BYTES: u64 = 1400;
+/// Further bytes of a point of a rod among strands that push each other, on a device: its solve, kept from part to part,
+/// and sixteen pairs with their forces and their memory. On the CPU, which has pairs of dense hair alone, 1400.
+const CONTACT_BYTES: u64 = 2800;
 /// Bytes of a point in the state that hair which rests is compared with: positions now and one step ago, velocities and
 /// their corrections, the planes of two carriers; and of a rod its section and spin.
 const KEPT_BYTES: u64 = 112;

@@ -273,6 +273,8 @@ choices! {
 
 /// Most iterations of a solve: one kernel may have to run them all.
 const MOST_ITERATIONS: u32 = 2000;
+/// Most rounds and Newton steps of strands that push each other in a step: each is two kernels or three.
+const MOST_ROUNDS: u32 = 1000;
 
 impl Settings {
     /// Checks what only a GPU cannot do.
@@ -286,10 +288,13 @@ impl Settings {
             let expected = "auto, chebyshev, jacobi or none on a GPU";
             return refuse("simulation.volume.preconditioner", found, expected);
         }
-        if self.contact.enabled {
+        let rods = &self.strands.rods;
+        let solves = rods.newton_steps.max(self.contact.rounds).saturating_mul(rods.substeps);
+        if self.has_contact() && solves > MOST_ROUNDS {
+            let found = format!("{} in each of {} parts of a step", self.contact.rounds, rods.substeps);
             let expected =
-                "false on a GPU, or `devices.simulation = \"cpu\"`: strands push each other on the CPU alone";
-            return refuse("simulation.contact.enabled", "true".to_owned(), expected);
+                "at most 1000 rounds or Newton steps in a step on a GPU, to which each is a few kernels";
+            return refuse("simulation.contact.rounds", found, expected);
         }
         if self.volume.max_iterations > MOST_ITERATIONS {
             let found = self.volume.max_iterations.to_string();

@@ -6,6 +6,7 @@ use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, M
 use super::buffers::Buffers;
 use super::inputs::Step;
 use super::records::{Outcome, PressureState, Report};
+use super::rod_crowd_buffers::ContactState;
 use super::stage::{StageKernels, Target};
 use crate::Model;
 
@@ -29,6 +30,7 @@ kernel! {
         7 outcomes: ReadWrite Outcome,
         8 pressure: Read PressureState,
         9 reports: ReadWrite Report,
+        10 contacts: Read ContactState,
     }
 }
 
@@ -56,8 +58,9 @@ impl StageKernels for Stage {
         let hair = Advance { step, rest_positions, rest, predicted, velocities, positions, outcomes };
         let advance = self.advance.bind(gpu, &hair)?;
         let pressure = buffers.volume.as_ref().map_or(&buffers.no_pressure, |volume| &volume.states);
-        let reports = &buffers.reports;
-        let report = self.report.bind(gpu, &Gathered { step, outcomes, pressure, reports })?;
+        let (reports, contacts) = (&buffers.reports, &buffers.contacts);
+        let report = Gathered { step, outcomes, pressure, reports, contacts };
+        let report = self.report.bind(gpu, &report)?;
         Ok(vec![advance.over(buffers.lane_count), (report, [1; 3])])
     }
 }

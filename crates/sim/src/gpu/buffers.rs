@@ -10,6 +10,7 @@ use super::inputs::Step;
 use super::motion::{Root, has_roots, part_count};
 use super::records::{Outcome, PointBox, PressureState, Report};
 use super::rod_buffers::{NUMBERS, RodBuffers, TRAITS};
+use super::rod_crowd_buffers::{ContactState, CrowdBuffers};
 use super::solids;
 use super::volume::Volume;
 use crate::grab::{Grab, Grip, NO_POINT};
@@ -62,6 +63,8 @@ pub(super) struct Buffers {
     pub reports: Buffer<Report>,
     /// Report of a step without a volume.
     pub no_pressure: Buffer<PressureState>,
+    /// Contacts of strands with each other in the last part of a step.
+    pub contacts: Buffer<ContactState>,
     pub volume: Option<Volume>,
     pub rods: Option<RodBuffers>,
 }
@@ -96,19 +99,31 @@ impl Buffers {
             outcomes: Buffer::new(gpu, "outcomes", workgroups)?,
             reports: Buffer::new(gpu, "reports", REPORTS)?,
             no_pressure: Buffer::new(gpu, "no pressure", 1)?,
+            contacts: Buffer::new(gpu, "contacts of strands", 1)?,
             volume: None,
             rods: match &model.rods {
-                Some(_) => Some(RodBuffers::new(gpu, lane_count, points)?),
+                Some(_) => Some(RodBuffers::new(gpu, model)?),
                 None => None,
             },
         };
         buffers.write_rest(model, &state.lengths)?;
         buffers.write_grips(&state.grab)?;
+        buffers.write_pairs(state)?;
         Ok(buffers)
     }
 
     pub fn point_count(&self) -> usize {
         self.lane_count * self.points
+    }
+
+    /// Writes the memory of the pairs of strands, where they push each other.
+    pub fn write_pairs(&self, state: &State) -> Result<(), SimError> {
+        self.crowd().map_or(Ok(()), |crowd| crowd.write(&state.pairs, &state.tensions))
+    }
+
+    /// The buffers of strands that push each other.
+    pub fn crowd(&self) -> Option<&CrowdBuffers> {
+        self.rods.as_ref()?.crowd.as_ref()
     }
 
     /// The air at the points, where it differs.

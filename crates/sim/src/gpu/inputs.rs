@@ -48,7 +48,12 @@ mirror! {
         pub wind_up: [f32; 3],
         pub per_area: f32,
         pub wind_aside: [f32; 3],
-        pub unused_c: u32,
+        /// Coulomb coefficients of strands that stick to each other, and of those that slide.
+        pub sticks: f32,
+        pub slides: f32,
+        pub unused_a: f32,
+        pub unused_b: f32,
+        pub unused_c: f32,
     }
 }
 
@@ -139,6 +144,8 @@ impl RodStep {
             wind_aside: aside,
             speed_sum: most_speed_sum(model),
             per_area: if shelters { per_area(model) } else { 1.0 },
+            sticks: model.settings.contact.friction,
+            slides: model.settings.contact.sliding_friction.min(model.settings.contact.friction),
             ..Self::default()
         }
     }

@@ -24,6 +24,8 @@ mod pose_roots;
 mod probe;
 mod records;
 mod rod_buffers;
+mod rod_crowd;
+mod rod_crowd_buffers;
 mod runner;
 mod shelter;
 mod slide;

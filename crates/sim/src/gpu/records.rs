@@ -21,9 +21,10 @@ mirror! {
         pub resting: f32,
         pub speed_sum: f32,
         pub speed_max: f32,
-        pub unused_a: f32,
-        pub unused_b: f32,
-        pub unused_c: f32,
+        /// Of strands that push each other: see `ContactReport`.
+        pub pairs: f32,
+        pub deepest: f32,
+        pub crossed: f32,
         pub pressure: PressureState,
     }
 }

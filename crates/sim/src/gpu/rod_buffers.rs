@@ -1,15 +1,20 @@
 //! Buffers of rods beyond those of all strands.
 
-use strandline_gpu::{Buffer, Gpu, GpuError, THREADS};
+use strandline_gpu::{Buffer, Gpu, THREADS};
 
 use super::air_buffers::ShelterBuffers;
+use super::rod_crowd_buffers::CrowdBuffers;
+use crate::{Model, SimError};
 
 /// Numbers of a node in the buffer of rods.
 pub(super) const NUMBERS: usize = 10;
 /// Numbers of the traits of a strand.
 pub(super) const TRAITS: usize = 9;
 /// Vectors of four numbers that a point takes while its strand is solved.
-const SLOTS: usize = 19;
+pub(super) const SLOTS: usize = 19;
+/// Further vectors of a point among strands that push each other, and those of a strand.
+pub(super) const EXTRAS: usize = 6;
+pub(super) const STATES: usize = 4;
 
 /// The buffers of rods.
 pub(super) struct RodBuffers {
@@ -22,18 +27,27 @@ pub(super) struct RodBuffers {
     pub shelter: Option<ShelterBuffers>,
     /// Stands for it there.
     pub no_air: Buffer<f32>,
+    /// Of strands that push each other, which keep what they work in.
+    pub crowd: Option<CrowdBuffers>,
 }
 
 impl RodBuffers {
     /// Buffers for nodes, grips and traits of a number of strands, and for the strands that are solved at a time.
-    pub fn new(gpu: &Gpu, lane_count: usize, points: usize) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, model: &Model) -> Result<Self, SimError> {
+        let (lane_count, points) = (model.lane_count(), model.points_per_strand);
         let groups = groups_at_once(lane_count, points);
+        let crowd = if model.settings.has_contact() { Some(CrowdBuffers::new(gpu, model)?) } else { None };
+        let work = match crowd {
+            Some(_) => CrowdBuffers::work(lane_count, points),
+            None => groups * THREADS * points * SLOTS,
+        };
         Ok(Self {
             nodes: Buffer::new(gpu, "rods", lane_count * (NUMBERS * points + 4 + TRAITS))?,
-            work: Buffer::new(gpu, "work of rods", groups * THREADS * points * SLOTS)?,
+            work: Buffer::new(gpu, "work of rods", work)?,
             groups,
             shelter: None,
             no_air: Buffer::new(gpu, "no air at points", 1)?,
+            crowd,
         })
     }
 }

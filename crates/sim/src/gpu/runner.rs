@@ -16,7 +16,7 @@ use super::solids;
 use super::volume::Volume;
 use crate::grab::Grab;
 use crate::step::{Stage, stages};
-use crate::{Drive, Model, RodReport, Settings, SimError, State, StepReport};
+use crate::{ContactReport, Drive, Model, RodReport, Settings, SimError, State, StepReport};
 
 /// A model with its kernels and a state on a device.
 ///
@@ -155,7 +155,8 @@ impl GpuRunner {
     /// solver.
     ///
     /// # Errors
-    /// A setting outside its range or MIC(0), then nothing changes; or the device was lost.
+    /// A setting outside its range or MIC(0), or too little room for pairs of strands, then nothing changes; or the device
+    /// was lost.
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), SimError> {
         settings.check_on_gpu()?;
         self.gpu.check()?;
@@ -164,7 +165,12 @@ impl GpuRunner {
             self.drain()?;
             return self.rebuild(settings, &self.state()?);
         }
+        let before = self.model.settings.clone();
         self.model.set_settings(settings)?;
+        if let Err(error) = self.fit_crowd(change.stages) {
+            self.model.set_settings(&before)?;
+            return Err(error);
+        }
         if change.masses {
             self.buffers.write_rest(&self.model, &self.lengths)?;
         } else if change.rest_shape {
@@ -346,7 +352,11 @@ fn step_report((report, seconds): Reported, model: &Model, segment_count: usize)
     StepReport {
         seconds,
         pressure: report.pressure.into(),
-        contacts: None,
+        contacts: model.settings.has_contact().then_some(ContactReport {
+            pairs: report.pairs as usize,
+            deepest: report.deepest,
+            crossed: report.crossed as usize,
+        }),
         rods: model.rods.is_some().then_some(RodReport {
             residual: report.residual,
             unsolved: report.unsolved as usize,

@@ -1,9 +1,12 @@
 //! Rods: a strand bends and twists in one thread, in all parts of a step.
 
+use std::sync::OnceLock;
+
 use strandline_body::skins_constant;
 use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, kernel};
 
 use super::inputs::Step;
+use super::rod_crowd::Crowd;
 use super::stage::{StageKernels, Target};
 use crate::Model;
 
@@ -21,22 +24,40 @@ kernel! {
     }
 }
 
-pub(super) struct Stage(Kernel<SolveRods<'static>>);
+pub(super) struct Stage {
+    alone: Kernel<SolveRods<'static>>,
+    /// Of strands that push each other, compiled when a step first has them.
+    crowd: OnceLock<Crowd>,
+    skins: (&'static str, f64),
+}
 
 impl StageKernels for Stage {
     fn declarations() -> Vec<Declaration> {
-        vec![SolveRods::declaration()]
+        let mut all = vec![SolveRods::declaration()];
+        all.extend(Crowd::declarations());
+        all
     }
 
     fn new(gpu: &Gpu, model: &Model) -> Result<Self, GpuError> {
-        Kernel::new(gpu, &[skins_constant(&model.colliders)]).map(Self)
+        let skins = skins_constant(&model.colliders);
+        Ok(Self { alone: Kernel::new(gpu, &[skins])?, crowd: OnceLock::new(), skins })
     }
 
     /// Nothing without rods.
     fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {
         let Target { gpu, buffers, side, .. } = *to;
         let Some(rods) = &buffers.rods else { return Ok(Vec::new()) };
-        let bound = self.0.bind(
+        if let Some(crowd) = &rods.crowd {
+            let kernels = match self.crowd.get() {
+                Some(compiled) => compiled,
+                None => {
+                    let compiled = Crowd::new(gpu, self.skins)?;
+                    self.crowd.get_or_init(|| compiled)
+                }
+            };
+            return kernels.bind(to, rods, crowd);
+        }
+        let bound = self.alone.bind(
             gpu,
             &SolveRods {
                 step: &buffers.step,

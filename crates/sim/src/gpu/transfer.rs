@@ -5,9 +5,12 @@ use std::sync::Arc;
 use glam::Vec3;
 use strandline_body::BodyFrame;
 use strandline_gpu::{Copied, Readback, Slot, Transfer};
+use strandline_groom::Lanes;
 
 use super::buffers::Buffers;
 use super::buffers::{floats, floats_mut, speeds};
+use super::rod_buffers::RodBuffers;
+use super::rod_crowd_buffers::{CrowdBuffers, Rounds, to_pairs};
 use super::runner::GpuRunner;
 use super::volume::GridState;
 use crate::grab::Grab;
@@ -35,6 +38,29 @@ impl GpuRunner {
         model.set_settings(settings)?;
         self.buffers = Buffers::new(&self.gpu, &model, state)?;
         (self.model, self.side, self.bound) = (model, 0, None);
+        Ok(())
+    }
+
+    /// Makes the buffers of strands that push each other fit the settings, anew where these are of `other` strands.
+    pub(super) fn fit_crowd(&mut self, other: bool) -> Result<(), SimError> {
+        let (gpu, model) = (&self.gpu, &self.model);
+        let Some(rods) = &mut self.buffers.rods else { return Ok(()) };
+        let wanted = model.settings.has_contact().then(|| Rounds::new(&model.settings));
+        let had = rods.crowd.as_ref().map(|crowd| crowd.rounds);
+        if had.is_some() == wanted.is_some() {
+            if let (Some(crowd), Some(rounds)) = (&mut rods.crowd, wanted) {
+                crowd.rounds = rounds;
+                if other {
+                    crowd.radii.write(bytemuck::cast_slice(&model.radii))?;
+                }
+            }
+        } else {
+            let RodBuffers { work, crowd, .. } = RodBuffers::new(gpu, model)?;
+            (rods.work, rods.crowd) = (work, crowd);
+        }
+        if had != wanted {
+            self.bound = None;
+        }
         Ok(())
     }
 
@@ -76,10 +102,15 @@ impl GpuRunner {
         let mut batch = Readback::new();
         let slots = [positions, previous, velocities].map(|buffer| batch.add(buffer, buffer.len()));
         let grid = self.buffers.volume.as_ref().map(|volume| batch.add(&volume.grid, 1));
+        let crowd = self.buffers.crowd().map(|crowd| {
+            let CrowdBuffers { kept, tensions, .. } = crowd;
+            (batch.add(kept, kept.len()), batch.add(tensions, tensions.len()))
+        });
         let transfer = batch.begin(velocities.gpu())?;
         let content = Content {
             slots,
             grid,
+            crowd,
             has_rods: self.buffers.rods.is_some(),
             body: self.body.clone(),
             time: self.time,
@@ -97,6 +128,7 @@ impl GpuRunner {
         self.buffers.places[self.side].write(floats(&state.positions))?;
         self.buffers.places[1 - self.side].write(floats(&state.previous_positions))?;
         self.buffers.velocities.write(&speeds(&self.model.with_sections(state)))?;
+        self.buffers.write_pairs(state)?;
         self.length_scale.clone_from(&state.length_scale);
         self.lengths = Arc::clone(&state.lengths);
         self.volume_box = state.volume_box;
@@ -128,6 +160,8 @@ pub struct ComingState {
 struct Content {
     slots: [Slot<f32>; 3],
     grid: Option<Slot<GridState>>,
+    /// Memory of the pairs of strands, and tensions \[N\].
+    crowd: Option<(Slot<[f32; 4]>, Slot<f32>)>,
     has_rods: bool,
     body: BodyFrame,
     time: f64,
@@ -169,6 +203,13 @@ impl Content {
             bytemuck::cast_slice_mut(&mut state.spins).copy_from_slice(&others[3 * count..4 * count]);
         } else {
             floats_mut(&mut state.corrections).copy_from_slice(others);
+        }
+        (state.pairs, state.tensions) = Default::default();
+        if let Some((kept, tensions)) = self.crowd.clone() {
+            state.pairs = to_pairs(&copied.take(kept));
+            state.tensions.resize(state.positions.len(), Lanes::default());
+            let tensions = copied.take(tensions);
+            bytemuck::cast_slice_mut(&mut state.tensions).copy_from_slice(&tensions[..]);
         }
         state.body = self.body.clone();
         state.time = self.time;
