@@ -303,7 +303,7 @@ def load(
 def grow(style: str = "long", *, strands: int | None = None, **settings: Any) -> Groom:
     """Grows a built-in style on the built-in bust: bob, long, wavy, curly, pixie, ponytail, buzz, side_swept, afro,
     coils, bun, braid, beard, brows or lashes. Keywords are the settings of the section ``style``:
-    ``grow("bob", strand_count=500, seed=3)``. With ``strands`` it grows so many in all, each with a curve of its own,
+    ``grow("bob", strand_count=500, seed=3)``. With ``strands`` it grows so many strands of hair, each with a curve of its own,
     as a scene does with ``groom.bound``: the first ``strand_count`` are marked as guides in ``guide_flags``."""
     bound = {} if strands is None else {"groom": {"bound": strands}}
     scene = Scene({"style": {"style": style, **settings}, **bound})

@@ -230,7 +230,7 @@ pub struct GroomOptions {
     /// bob, long, wavy, curly, pixie, ponytail, buzz, side_swept, afro, coils, bun, braid, beard, brows or lashes.
     #[arg(long, value_name = "NAME", value_parser = Style::from_str)]
     pub style: Style,
-    /// Number of strands.
+    /// Number of strands of hair.
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..=8_000_000))]
     pub strands: u32,
     /// Mark so many of the strands as guides, where the format can, and grow the others between them, each with a curve

@@ -10,6 +10,8 @@ use crate::mesh::normals_about;
 
 /// Distance between unit normals up to which those of a file are those of its triangles, and those at one place are one.
 const SAME: f32 = 2e-3;
+/// Normals at one place that are looked through for one of them: more are of a damaged file.
+const MOST_NORMALS: usize = 64;
 
 /// Normals that are not those of the triangles: hard edges, or normals that somebody drew or smoothed.
 ///
@@ -35,7 +37,7 @@ struct Corner {
     parts: Vec3,
 }
 
-/// What carries the parts of a normal: the columns of the inverse transpose.
+/// Columns of the inverse transpose, which carry the parts of a normal.
 type Carrier = [Vec3; 3];
 
 impl CarriedNormals {
@@ -103,7 +105,11 @@ fn groups(normals: &[Vec3], welded: &[u32]) -> Vec<u32> {
     let (mut groups, mut firsts) = (Vec::with_capacity(normals.len()), Vec::<Vec3>::new());
     for (place, normal) in welded.iter().zip(normals) {
         let known = at_place.entry(*place).or_default();
-        let same = known.iter().find(|group| firsts[**group as usize].distance(*normal) < SAME);
+        let same = known
+            .iter()
+            .rev()
+            .take(MOST_NORMALS)
+            .find(|group| firsts[**group as usize].distance(*normal) < SAME);
         let group = same.copied().unwrap_or_else(|| {
             firsts.push(*normal);
             known.push(firsts.len() as u32 - 1);

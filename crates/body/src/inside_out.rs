@@ -5,6 +5,9 @@ use strandline_base::par::prelude::*;
 
 /// Least volume of a surface that has an inside, as a share of its area to the power of three halves; of a ball it is 0.094.
 const LEAST_VOLUME: f64 = 1e-3;
+/// Largest share of the area that the holes of such a surface may have, as the length of the sum of its vector areas; of half a ball
+/// it is 0.5, of a sheet 1. An open sheet that bends the other way is no mirror image.
+const MOST_OPEN: f64 = 0.25;
 /// Share of the volume at rest from which on one of the other sign tells a mirror image.
 const TURNED: f64 = 0.02;
 /// Triangles whose volumes are added in one sum.
@@ -24,10 +27,12 @@ impl RestVolume {
     pub fn new(positions: &[Vec3], triangles: &[[u32; 3]]) -> Self {
         let of = |[a, b, c]: &[u32; 3]| {
             let [a, b, c] = [a, b, c].map(|corner| positions[*corner as usize].as_dvec3());
-            0.5 * (b - a).cross(c - a).length()
+            0.5 * (b - a).cross(c - a)
         };
-        let (area, volume) = (triangles.iter().map(of).sum::<f64>(), signed_volume(positions, triangles));
-        let has_inside = volume.abs() > LEAST_VOLUME * area.powf(1.5);
+        let area = triangles.iter().map(|triangle| of(triangle).length()).sum::<f64>();
+        let open = triangles.iter().map(of).sum::<DVec3>().length();
+        let volume = signed_volume(positions, triangles);
+        let has_inside = volume.abs() > LEAST_VOLUME * area * area.sqrt() && open < MOST_OPEN * area;
         Self { volume: if has_inside { volume } else { 0.0 }, area }
     }
 
@@ -113,5 +118,24 @@ mod tests {
         let triangles = [[0, 1, 2], [0, 2, 3]];
         let mirrored = places.map(|place| -place);
         assert_eq!(RestVolume::new(&places, &triangles).side(&mirrored, &triangles), 1.0);
+    }
+
+    #[test]
+    fn a_curved_sheet_that_bends_the_other_way_is_no_mirror_image() {
+        let sheet = |sagitta: f32| -> Vec<Vec3> {
+            let place = |index: u32| vec3((index % 9) as f32 - 4.0, 0.0, (index / 9) as f32 - 4.0) / 8.0;
+            let places = (0..81).map(place);
+            places.map(|place| place.with_y(sagitta * (1.0 - 2.0 * place.length_squared()))).collect()
+        };
+        let quad = |index: u32| {
+            let first = index / 8 * 9 + index % 8;
+            [[first, first + 9, first + 1], [first + 1, first + 9, first + 10]]
+        };
+        let triangles: Vec<[u32; 3]> = (0..64).flat_map(quad).collect();
+        let rest = RestVolume::new(&sheet(0.1), &triangles);
+        assert_eq!(rest.side(&sheet(-0.1), &triangles), 1.0);
+        // The volume alone tells one.
+        let [at_rest, bent] = [0.1, -0.1].map(|sagitta| signed_volume(&sheet(sagitta), &triangles));
+        assert!(bent / at_rest < -TURNED && rest.volume == 0.0, "{at_rest} {bent}");
     }
 }

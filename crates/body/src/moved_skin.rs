@@ -15,7 +15,7 @@ use crate::{BodyFrame, Mesh};
 /// The vertices of a mesh as they were drawn last, and the normals that follow from them.
 #[derive(Clone, Debug, Default)]
 pub struct MovedSkin {
-    /// What normals follow from; found once.
+    /// Inputs of the normals; found once.
     rest: Option<Rest>,
     positions: Option<Arc<[Vec3]>>,
     /// Bend of the neck, and the vertices under it.
@@ -85,7 +85,7 @@ impl MovedSkin {
     pub fn take(&mut self, mesh: &Mesh, body: &BodyFrame) -> bool {
         // A skin at rest has the normals of the mesh, to the bit.
         let skin = mesh.skin_in(body).filter(|skin| skin[..] != mesh.positions[..]);
-        let bend = mesh.bend_in(body).filter(|_| skin.is_none());
+        let bend = mesh.bend_in(body).filter(|_| mesh.skin_in(body).is_none());
         let is_same = match (&self.positions, skin) {
             (Some(known), Some(skin)) => Arc::ptr_eq(known, skin) || known == skin,
             (known, skin) => known.is_none() && skin.is_none(),

@@ -192,7 +192,7 @@ impl SkinRoots {
             deformation += outer((b - a).cross(c - a).normalize_or_zero() * side, *row);
         }
         if side < 0.0 {
-            deformation = deformation * mirror_along(corner.normal);
+            deformation *= mirror_along(corner.normal);
         }
         rotation_of(deformation)
     }

@@ -87,7 +87,7 @@ impl Look {
         }
         let sides = max - min;
         let largest = (sides.x * sides.y).max(sides.y * sides.z).max(sides.z * sides.x);
-        let drawn = every as f32 * self.follow_strands as f32 * widening(self, strands);
+        let drawn = every as f32 * self.follow_strands as f32 * widening(self, guides.hair_strands());
         drawn * area / largest.max(f32::MIN_POSITIVE)
     }
 }

@@ -1,5 +1,5 @@
-//! Everything beneath the names of the crate: its parts, and the crates below it. They serve the
-//! checks and the Python package; they may change with any version.
+//! Everything beneath the names of the crate: its parts, and the crates below it. They serve
+//! checks, tests, fuzz targets and the Python package; they may change with any version.
 
 pub use strandline_base as base;
 pub use strandline_body as body;

@@ -91,7 +91,7 @@ impl Modules {
 
     /// The files outside some folders that import from one of them, by name, each with that folder. Names that the root
     /// of the crate gives on count as the folder's.
-    pub fn from_outside(&self, folders: &[&str]) -> BTreeSet<(&str, String)> {
+    pub fn outside_of(&self, folders: &[&str]) -> BTreeSet<(&str, String)> {
         let is_in =
             |path: &[String]| folders.iter().any(|folder| path.first().is_some_and(|first| first == folder));
         let wrong = self.edges().filter(|(path, target)| !path.is_empty() && !is_in(path) && is_in(target));

@@ -169,7 +169,7 @@ impl Found {
             self.arrows.extend(wrong.iter().map(|file| format!("{folder}/{file} imports from {other}/")));
         }
         for (_, backends) in BACKENDS.iter().filter(|(place, _)| *place == folder) {
-            let wrong = modules.from_outside(backends).into_iter();
+            let wrong = modules.outside_of(backends).into_iter();
             self.arrows.extend(wrong.map(|(file, other)| format!("{folder}/{file} imports from {other}/")));
         }
     }
@@ -302,7 +302,7 @@ mod tests {
         assert!(!tunnels("signal_hook::low_level::exit(1)"));
         let mut found = Found::default();
         let file = ("bench/forms.rs".to_owned(), "use strandline::low_level::sim;".to_owned());
-        found.measure("apps/cli/src", &[file.clone()]);
+        found.measure("apps/cli/src", std::slice::from_ref(&file));
         assert!(found.arrows.len() == 1 && found.arrows[0].starts_with("apps/cli/src/bench/forms.rs"));
         found.measure("checks/laws", &[file]);
         assert_eq!(found.arrows.len(), 1);

@@ -245,7 +245,7 @@ fn joined(
         {
             if !matches!(lost, Attribute::WidthsAlong | Attribute::GroupNames) {
                 let has = if lost.is_in(&part.groom) {
-                    "this file alone has"
+                    "not all files before it have"
                 } else {
                     "not this file but one before it has"
                 };

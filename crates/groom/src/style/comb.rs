@@ -189,7 +189,7 @@ impl Combed {
         let backward = place.along((self.root.position - WHORL) * spread + loose);
         let combed = backward.lerp(sideways, parted);
         if self.led {
-            return combed * on_top + (self.to_ear(place) + self.off_face(point)) * (1.0 - 0.75 * on_top);
+            return combed * on_top + (self.way_to_ear(place) + self.off_face(point)) * (1.0 - 0.75 * on_top);
         }
         let down = (Vec3::NEG_Y + self.over_ear(point)).normalize();
         let mut free = down + self.off_face(point) + self.toward_curtain(point);
@@ -200,7 +200,7 @@ impl Combed {
     }
 
     /// Along the skin to the place behind the ear; over the ear, not across it.
-    fn to_ear(&self, place: Place) -> Vec3 {
+    fn way_to_ear(&self, place: Place) -> Vec3 {
         let way = BEHIND_EAR * Vec3::new(self.side, 1.0, 1.0) - place.point;
         let before_ear = smooth(-0.03, 0.005, place.point.z) * smooth(0.030, 0.008, place.point.y);
         place.along(way.normalize_or_zero() + Vec3::new(0.0, 1.4 * before_ear, -0.3 * before_ear))

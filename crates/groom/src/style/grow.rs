@@ -43,7 +43,7 @@ impl StyleSettings {
         self.grow_hair(self.strand_count)
     }
 
-    /// Grows the style with `drawn` strands in all. The first `strand_count` are those of [`StyleSettings::grow`] and
+    /// Grows the style with `drawn` strands of hair. The first `strand_count` are those of [`StyleSettings::grow`] and
     /// marked as guides; the others lie between them, each with a curve of its own. Strands beside the hair come on top.
     ///
     /// # Errors

@@ -6,6 +6,11 @@ use crate::PressureReport;
 
 /// Most workgroups of a round: each sums what all of them found.
 pub(super) const MOST_WORKGROUPS: usize = 256;
+/// Vectors of four numbers that a point takes while its strand is solved.
+pub(super) const SLOTS: usize = 19;
+/// Further vectors of a point among strands that push each other, and those of a strand.
+pub(super) const EXTRAS: usize = 6;
+pub(super) const STATES: usize = 4;
 
 mirror! {
     /// Report of a step. Mirrors `Report` in report.wesl.

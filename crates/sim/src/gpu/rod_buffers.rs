@@ -3,6 +3,7 @@
 use strandline_gpu::{Buffer, Gpu, THREADS};
 
 use super::air_buffers::ShelterBuffers;
+use super::records::SLOTS;
 use super::rod_crowd_buffers::CrowdBuffers;
 use crate::{Model, SimError};
 
@@ -10,11 +11,6 @@ use crate::{Model, SimError};
 pub(super) const NUMBERS: usize = 10;
 /// Numbers of the traits of a strand.
 pub(super) const TRAITS: usize = 9;
-/// Vectors of four numbers that a point takes while its strand is solved.
-pub(super) const SLOTS: usize = 19;
-/// Further vectors of a point among strands that push each other, and those of a strand.
-pub(super) const EXTRAS: usize = 6;
-pub(super) const STATES: usize = 4;
 
 /// The buffers of rods.
 pub(super) struct RodBuffers {

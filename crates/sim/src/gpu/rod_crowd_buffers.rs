@@ -3,7 +3,7 @@
 use strandline_gpu::{Buffer, Gpu, Scan, mirror};
 use strandline_groom::{LANES, Lanes};
 
-use super::rod_buffers::{EXTRAS, SLOTS, STATES};
+use super::records::{EXTRAS, SLOTS, STATES};
 use crate::wisps::pair::Pair;
 use crate::{Model, Settings, SimError};
 

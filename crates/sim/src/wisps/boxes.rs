@@ -7,6 +7,10 @@ use crate::cells::grid::REACH;
 
 /// Most cells that a box takes along an axis: of a larger one those about its middle.
 const MOST_CELLS: i32 = 8;
+/// Factors of the hash of a cell \[Teschner2003\].
+const HASH_X: u32 = 73_856_093;
+const HASH_Y: u32 = 19_349_663;
+const HASH_Z: u32 = 83_492_791;
 /// Boxes whose pairs one thread looks for at a time.
 const CHUNK: usize = 256;
 /// Entries of buckets that a thread copies at a time.
@@ -181,10 +185,7 @@ fn cells(range: &Range) -> impl Iterator<Item = IVec3> + use<> {
 /// origin share buckets.
 fn bucket(cell: IVec3, mask: u32) -> u32 {
     let [x, y, z] = cell.to_array().map(|number| number as u32);
-    x.wrapping_mul(73_856_093)
-        .wrapping_add(y.wrapping_mul(19_349_663))
-        .wrapping_add(z.wrapping_mul(83_492_791))
-        & mask
+    x.wrapping_mul(HASH_X).wrapping_add(y.wrapping_mul(HASH_Y)).wrapping_add(z.wrapping_mul(HASH_Z)) & mask
 }
 
 #[cfg(test)]

@@ -125,7 +125,10 @@ fn spread_grown(
     let of_face =
         |strands: &mut dyn Iterator<Item = usize>| face.as_ref().map_or(0, |face| face.beside(strands));
     let beside = of_face(&mut (0..count));
-    let guides_beside = chosen.map_or(beside, |chosen| of_face(&mut chosen.iter().copied()));
+    // So few guides may all be of the face: one of them counts as hair's.
+    let of_chosen =
+        |chosen: &[usize]| of_face(&mut chosen.iter().copied()).min(chosen.len().saturating_sub(1));
+    let guides_beside = chosen.map_or(beside, of_chosen);
     let mut spreads = given;
     if let Some(chosen) = chosen {
         let counts = [chosen.len() - guides_beside, count - beside];

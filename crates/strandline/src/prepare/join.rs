@@ -150,7 +150,7 @@ pub(super) fn add_grooms(
                 let has = if lost.is_in(groom) {
                     "not this file but one before it has"
                 } else {
-                    "this file alone has"
+                    "not all files before it have"
                 };
                 notes.push(format!("{}: {has} {}: left out", part.file.display(), lost.name()));
             } else if lost == Attribute::Influences && lost.is_in(groom) {

@@ -10,13 +10,14 @@ use strandline_base::{
 };
 
 use super::{
-    LAYOUT, Snapshot,
+    LAYOUT, MAX_FRAMES, Snapshot,
     arrays::{check_memory, expect, missing, starts, text},
     check_layout,
     hair_pose::{HairPose, MOST_PIECES, REMEDY, check, vectors},
     names, read,
 };
 use crate::{
+    scene::MAX_FILE_BYTES,
     sim::{Checkpoint, Part},
     strands::bodies::{self, Lists},
 };
@@ -147,10 +148,16 @@ pub(super) fn read<R: Read + Seek>(
     Ok(pose.moved(origin))
 }
 
+/// Most bytes of `meta`: that of a moving cache has a scene, spelled as JSON, and some measures of each frame.
+const MOST_META: u64 = 2 * MAX_FILE_BYTES + 160 * MAX_FRAMES;
+
 /// Refuses a file of another layout, or of other guides than those of a shape.
 fn check_hair<R: Read + Seek>(npz: &mut Npz<R>, shape: [usize; 2]) -> Result<(), String> {
     let Some(mut rows) = npz.open("meta").map_err(text)? else { return Err(missing(npz, "meta")) };
     expect(&rows, "meta", Kind::U8, &[Some(rows.bytes())])?;
+    if rows.bytes() > MOST_META {
+        return Err(format!("meta of {} bytes, expected {MOST_META} at most", rows.bytes()));
+    }
     check_memory("meta", rows.bytes(), 2)?;
     let bytes = npz.all(&mut rows).map_err(text)?;
     let meta: Meta = serde_json::from_slice(&bytes).map_err(|error| format!("meta: {error}"))?;

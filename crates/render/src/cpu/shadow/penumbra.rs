@@ -239,7 +239,7 @@ impl ShadowMap {
         }
         let depth = way.depth;
         way.among(&self.nearest_body, |step, least| {
-            // What lies nearer to the point than the step before does not count: see `past_body`.
+            // Depths nearer to the point than the step before do not count: see `past_body`.
             let nearer = if step == 0 { 0.0 } else { 0.999 * STRETCHES[0] * gap(step - 1) };
             depth - least > self.body_bias.max(nearer)
         })
