@@ -23,7 +23,7 @@ fn jumps_are_listed_and_vertices_at_no_place_are_told_once() {
     let (scene, sources) = aside();
     let mut player = Player::from_sources(&scene, &sources, scene.devices, false).unwrap();
     let mut notes = Vec::new();
-    while let Some(event) = player.next() {
+    for event in player.by_ref() {
         if let Event::Note(note) = event.unwrap() {
             notes.push(note);
         }
