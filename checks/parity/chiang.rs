@@ -62,6 +62,8 @@ fn the_fibre_of_chiang_agrees_point_by_point() {
 fn colours_of_the_groom_agree_point_by_point() {
     let mut both = Both::colored();
     both.look = Look::brown();
+    // The plain stages here have no guides to choose texels by, as the renderer does for light colours.
+    both.look.shadow.map_size = 512;
     agree(both, true);
 }
 

@@ -10,7 +10,7 @@ use crate::cargo::{cargo_command, root};
 use crate::{adapter, bare, python, web};
 
 /// Long tests: an environment, and the words for cargo behind `test --workspace --test`.
-const TESTS: [((&str, &str), [&str; 2]); 18] = [
+const TESTS: [((&str, &str), [&str; 2]); 17] = [
     // Each command is ended as often as this, at random times.
     (("STRANDLINE_KILLS", "52"), ["reliability", "kills::"]),
     // Seconds of random clicks, keys and files.
@@ -21,9 +21,8 @@ const TESTS: [((&str, &str), [&str; 2]); 18] = [
     (("STRANDLINE_FULL", "1"), ["pictures", "gpu"]),
     // Laws of whole scenes on a software adapter, which the short run leaves out there.
     (("STRANDLINE_FULL", "1"), ["laws", "gpu"]),
-    // Styles, bound strands, small motion, a skin and the groom of Sintel on the CPU.
+    // Styles, small motion, a skin and the groom of Sintel on the CPU.
     (("STRANDLINE_FULL", "1"), ["laws", "rods::"]),
-    (("STRANDLINE_FULL", "1"), ["laws", "bound::"]),
     (("STRANDLINE_FULL", "1"), ["laws", "small_motion::"]),
     (("STRANDLINE_FULL", "1"), ["laws", "skin_contact::"]),
     (("STRANDLINE_FULL", "1"), ["laws", "sintel::"]),

@@ -226,7 +226,7 @@ impl BodyFrame {
             return end.clone();
         }
         if self == end {
-            return self.clone();
+            return self.clone().with_held(self.held_count.max(end.held_count));
         }
         let count = self.piece_count().max(end.piece_count());
         let others: Option<Arc<[Pose]>> = (count > 1)
