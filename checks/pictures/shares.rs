@@ -24,8 +24,8 @@ law! {
             mean(&layers, &head.crown(&layers))
         };
         // Of 8,176 strands all are summed, of 8,192 every second; of 16,368 every second, of 16,384 every fourth.
-        // A software adapter draws the pair that has both.
-        for &guides in on.either(&[512, 1_024][..], &[1_024]) {
+        // In short the pair that has both is drawn.
+        for &guides in on.brief(on.short(&[512, 1_024][..], &[1_024]), &[1_024]) {
             let (few, many) = (light(guides, 1), light(guides, 0));
             // Most of the light of blonde hair is scattered; half of the hair scatters far less of it. Found: 4 % on the CPU,
             // whose maps of light hair are fine: half of the strands, each for two, leave more texels empty. Below 3 % with 512 texels.
