@@ -319,6 +319,19 @@ impl StyleSettings {
         self.behind_ears && self.style.is_parted()
     }
 
+    /// Settings of this section that are set although the style makes nothing of them, as keys.
+    pub fn without_effect(&self) -> Vec<&'static str> {
+        let (falls, is_tied) = (self.style.is_parted(), self.style.is_tied());
+        let set = [
+            ("style.fringe", self.fringe > 0.0 && !falls && !is_tied),
+            ("style.behind_ears", self.behind_ears && !falls),
+            ("style.beard", self.beard && self.style == Style::Beard),
+            ("style.brows", self.brows && self.style == Style::Brows),
+            ("style.lashes", self.lashes && self.style == Style::Lashes),
+        ];
+        set.into_iter().filter(|(_, unused)| *unused).map(|(key, _)| key).collect()
+    }
+
     /// True for hair that falls in curls; the coils of an afro are closer together than locks are.
     pub(super) fn is_curled(&self) -> bool {
         self.curl_radius > 0.0 && self.style.is_parted()

@@ -338,3 +338,16 @@ fn settings_outside_their_range_are_refused_by_name() {
     }
     assert!("mohawk".parse::<Style>().unwrap_err().to_string().contains("bob, long"));
 }
+
+#[test]
+fn settings_that_a_style_makes_nothing_of_are_named() {
+    let unused = |style: Style| {
+        let all = StyleSettings { fringe: 0.05, behind_ears: true, beard: true, ..StyleSettings::new(style) };
+        all.without_effect()
+    };
+    assert!(unused(Style::Bob).is_empty());
+    assert_eq!(unused(Style::Ponytail), ["style.behind_ears"]);
+    assert_eq!(unused(Style::Buzz), ["style.fringe", "style.behind_ears"]);
+    assert_eq!(unused(Style::Beard), ["style.fringe", "style.behind_ears", "style.beard"]);
+    assert!(StyleSettings::new(Style::Buzz).without_effect().is_empty());
+}

@@ -51,6 +51,11 @@ fn brush(loading: &mut Loading) {
 
 /// The style, on the body of a source or on the mannequin.
 fn grown(loading: &mut Loading) -> Result<Groom, Error> {
+    let style = &loading.scene.style;
+    let unused = style.without_effect().into_iter();
+    let notes =
+        unused.map(|key| format!("{key} changes nothing: `{}` has no use for it", style.style.name()));
+    loading.notes.extend(notes.collect::<Vec<_>>());
     let scene = &loading.scene;
     if loading.own_mesh().is_none() {
         return scene.grow(scene.grown_strands());
