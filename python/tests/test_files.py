@@ -4,7 +4,6 @@ import json
 import os
 import subprocess
 import sys
-import threading
 
 import numpy as np
 import pytest
@@ -88,16 +87,13 @@ def test_an_archive_that_takes_too_long_is_given_up(tmp_path, rich, monkeypatch)
     rich.save(tmp_path / "whole.abc")
     assert _archives.time_limit(0) >= 30 and _archives.time_limit(10**9) >= 1000
     os.mkfifo(tmp_path / "a.abc")
-
-    def load_endless():
-        """Loads a file whose first bytes are there, and of which nothing more comes."""
-        threading.Thread(target=lambda: (tmp_path / "a.abc").write_bytes(b"Ogawa\xff"), daemon=True).start()
-        strandline.load(tmp_path / "a.abc")
-
+    # First bytes, of which nothing more comes: an end for writing stays open, so that a reader meets no end of the file.
+    endless = os.open(tmp_path / "a.abc", os.O_RDWR)
     with monkeypatch.context() as context:
         context.setattr(_archives, "time_limit", lambda size: 1.0)
+        os.write(endless, b"Ogawa\xff")
         with pytest.raises(Error, match="cannot read the archive: its reader was stopped after 1 s.*a.abc"):
-            load_endless()
+            strandline.load(tmp_path / "a.abc")
     assert len(strandline.load(tmp_path / "whole.abc")) == 64
     # The reader ends by itself where nobody is left to stop it.
     task = {"what": "groom", "file": str(tmp_path / "a.abc"), "out": "", "options": {"frame": None, "scale": 1.0}, "seconds": -9.0}
@@ -113,10 +109,8 @@ def test_an_archive_that_takes_too_long_is_given_up(tmp_path, rich, monkeypatch)
         "import os, signal, sys, threading, strandline\n"
         # A shell's job in the background ignores it.
         "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-        "def late():\n"
-        "    open('a.abc', 'wb').write(b'Ogawa\\xff')\n"
-        "    threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()\n"
-        "threading.Thread(target=late, daemon=True).start()\n"
+        "os.write(os.open('a.abc', os.O_RDWR), b'Ogawa\\xff')\n"
+        "threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()\n"
         "try:\n"
         "    strandline.load('a.abc')\n"
         "except KeyboardInterrupt:\n"
@@ -124,6 +118,7 @@ def test_an_archive_that_takes_too_long_is_given_up(tmp_path, rich, monkeypatch)
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=120)
     assert done.stdout.strip() == "stopped 64", done.stderr[-2000:]
+    os.close(endless)
 
 
 @pytest.mark.parametrize("suffix", ["usdc", "abc"])
