@@ -22,6 +22,7 @@ mod pose;
 mod printable;
 pub mod random;
 pub mod real;
+mod recent;
 mod setting;
 mod setting_fields;
 mod setting_macro;
@@ -43,6 +44,7 @@ pub use plain_file::{open_plain, read_plain};
 pub use pose::Pose;
 pub use printable::printable;
 pub use random::Random;
+pub use recent::Recent;
 pub use setting::{
     Group, Items, Key, Kind, Overrides, Row, SettingError, Table, Value, Word, number, plain_name,
 };

@@ -54,23 +54,36 @@ impl Mesh {
 /// They form closed rims: every vertex is left by as many as arrive.
 fn open_edges(mesh: &Mesh) -> Vec<Edge> {
     let welded = welded_vertices(&mesh.positions);
-    let mut edges: Vec<(Edge, bool)> = Vec::with_capacity(mesh.triangles.len() * 3);
-    for triangle in &mesh.triangles {
-        let [a, b, c] = triangle.map(|corner| welded[corner as usize]);
-        for [start, end] in [[a, b], [b, c], [c, a]] {
-            if start != end {
-                edges.push(([start.min(end), start.max(end)], start < end));
-            }
-        }
+    let edges = || {
+        mesh.triangles.iter().flat_map(|triangle| {
+            let [a, b, c] = triangle.map(|corner| welded[corner as usize]);
+            [[a, b], [b, c], [c, a]].into_iter().filter(|[start, end]| start != end)
+        })
+    };
+    // Edges by their lower end: the higher one, and whether it is the end. A vertex has a few: to sort those of each
+    // takes a fraction of the time of sorting all.
+    let mut starts = vec![0_usize; mesh.positions.len() + 1];
+    edges().for_each(|[start, end]| starts[start.min(end) as usize + 1] += 1);
+    for low in 0..mesh.positions.len() {
+        starts[low + 1] += starts[low];
     }
-    edges.sort_unstable();
+    let (mut next, mut highs) = (starts.clone(), vec![0_u64; starts[mesh.positions.len()]]);
+    for [start, end] in edges() {
+        let place = &mut next[start.min(end) as usize];
+        highs[*place] = u64::from(start.max(end)) << 1 | u64::from(start < end);
+        *place += 1;
+    }
     let mut open = Vec::new();
-    for group in edges.chunk_by(|one, other| one.0 == other.0) {
-        let [low, high] = group[0].0;
-        let forward = group.iter().filter(|(_, forward)| *forward).count();
-        let backward = group.len() - forward;
-        open.extend((backward..forward).map(|_| [low, high]));
-        open.extend((forward..backward).map(|_| [high, low]));
+    for (low, range) in starts.windows(2).enumerate() {
+        let highs = &mut highs[range[0]..range[1]];
+        highs.sort_unstable();
+        for group in highs.chunk_by(|one, other| one >> 1 == other >> 1) {
+            let (low, high) = (low as u32, (group[0] >> 1) as u32);
+            let forward = group.iter().filter(|&edge| edge & 1 == 1).count();
+            let backward = group.len() - forward;
+            open.extend((backward..forward).map(|_| [low, high]));
+            open.extend((forward..backward).map(|_| [high, low]));
+        }
     }
     open.sort_unstable();
     open

@@ -1,10 +1,12 @@
+use std::convert::Infallible;
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3, Vec4};
-use strandline_base::par::prelude::*;
+use strandline_base::{Recent, par::prelude::*};
 
 use super::eyeball::eyeball;
 use super::model::Mannequin;
+use super::person::{Build, Eyes};
 use super::surface::settle;
 use super::{paint, refine};
 use crate::scalp_place::uv;
@@ -33,7 +35,15 @@ impl Mannequin {
     /// colour and the scalp's coordinates, and two eyeballs with colours of their own.
     ///
     /// Materials: `skin` has no colour of its own, `eyes` have. Coordinates are those of [`crate::Root::uv`], v down.
+    ///
+    /// Made once: the process keeps the last two.
     pub fn figure(&self) -> Mesh {
+        static FIGURES: Recent<(Build, Eyes), Mesh, 2> = Recent::new();
+        let Ok(figure) = FIGURES.get(self.kind(), || Ok::<_, Infallible>(self.drawn()));
+        (*figure).clone()
+    }
+
+    fn drawn(&self) -> Mesh {
         let mut mesh = self.coarse_mesh(2.0);
         for round in 0..ROUNDS {
             self.refine(&mut mesh, round);

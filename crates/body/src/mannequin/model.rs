@@ -1,11 +1,12 @@
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
+use strandline_base::Recent;
 
 use super::field::Field;
 use super::person::{Build, Eyes};
 use super::shape::BustShape;
-use crate::{Aabb, SignedDistance};
+use crate::{Aabb, BodyError, DistanceGrid, SignedDistance};
 
 /// The built-in bust: a smooth signed-distance model of skull, jaw, nose, ears, neck and shoulders.
 ///
@@ -58,6 +59,22 @@ impl Mannequin {
         let value = field.value / (1.0 + (steepness - 1.0) * fade);
         let distance = if value > FAR { FAR + FAR_RATE * (value - FAR) } else { value };
         (distance, field.gradient.normalize_or(Vec3::Y))
+    }
+
+    /// What all of the model is a function of.
+    pub(super) fn kind(&self) -> (Build, Eyes) {
+        (self.build, self.eyes)
+    }
+
+    /// The signed distance sampled at `spacing` \[m\], padded by `padding` \[m\], as [`DistanceGrid::from_field`]
+    /// makes it. Made once: the process keeps the last two.
+    ///
+    /// # Errors
+    /// As [`DistanceGrid::from_field`].
+    pub fn grid(&self, spacing: f32, padding: f32) -> Result<Arc<DistanceGrid>, BodyError> {
+        static GRIDS: Recent<(Build, Eyes, [u32; 2]), DistanceGrid, 2> = Recent::new();
+        let key = (self.build, self.eyes, [spacing, padding].map(f32::to_bits));
+        GRIDS.get(key, || DistanceGrid::from_field(self, spacing, padding))
     }
 
     /// True where the eyeballs show.

@@ -78,7 +78,7 @@ fn mannequin(loading: &mut Loading) -> Result<(), Error> {
     let shape = if body.exact {
         Shape::Mannequin(mannequin.clone())
     } else {
-        let grid = DistanceGrid::from_field(&*mannequin, body.spacing, DISTANCE_PADDING)?;
+        let grid = mannequin.grid(body.spacing, DISTANCE_PADDING)?;
         grid_shape(loading, grid)
     };
     let (scene, pivot) = (&loading.scene, mannequin.neck_pivot());
@@ -122,7 +122,7 @@ fn own_shape(loading: &mut Loading) -> Result<Shape, Error> {
         (None, mesh) => kept_grid(mesh.unwrap_or(&Mesh::default()), body.spacing)?,
     };
     let follows = loading.motion.is_some() && body.collider_file.is_none();
-    let shape = grid_shape(loading, grid);
+    let shape = grid_shape(loading, Arc::new(grid));
     match (loading.mesh.as_ref().filter(|_| follows), shape) {
         (Some(mesh), Shape::Grid(grid)) => {
             let note = hidden_solids(loading);
@@ -163,7 +163,7 @@ fn hidden_solids(loading: &Loading) -> Option<String> {
 }
 
 /// A grid as a solid. Adds a note where it is coarser than the scene asks for.
-fn grid_shape(loading: &mut Loading, grid: DistanceGrid) -> Shape {
+fn grid_shape(loading: &mut Loading, grid: Arc<DistanceGrid>) -> Shape {
     let (asked, spacing) = (loading.scene.body.spacing, grid.spacing());
     if spacing > asked {
         let [x, y, z] = grid.cells().to_array();
@@ -172,5 +172,5 @@ fn grid_shape(loading: &mut Loading, grid: DistanceGrid) -> Shape {
              {x} x {y} x {z} cells"
         ));
     }
-    Shape::Grid(Arc::new(grid))
+    Shape::Grid(grid)
 }
