@@ -12,6 +12,7 @@ pub fn root() -> &'static Path {
 pub fn cargo_command(arguments: &[&str]) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.args(arguments).current_dir(root());
+    crate::beside::prepare(&mut command);
     command
 }
 

@@ -5,6 +5,7 @@
 
 mod adapter;
 mod bare;
+mod beside;
 mod cargo;
 mod comments;
 mod faults;
@@ -76,6 +77,9 @@ enum Chore {
 }
 
 fn main() -> ExitCode {
+    if beside::is_called() {
+        return beside::compile();
+    }
     let words: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let passed = match chore(&words) {

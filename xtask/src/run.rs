@@ -8,7 +8,7 @@ use crate::cargo::{cargo_command, root};
 use crate::programs::{self, Ran, Tally};
 use crate::python::Coming;
 use crate::times::{Clock, Times};
-use crate::{adapter, bare, house, licences, long, names, python, workflows};
+use crate::{adapter, bare, beside, house, licences, long, names, python, workflows};
 
 /// Builds every test program and example; the messages of this call name them.
 const BUILD: [&str; 4] = ["test", "--workspace", "--no-run", "--message-format=json-render-diagnostics"];
@@ -53,7 +53,9 @@ pub fn test(setup: bool) -> bool {
     };
     let mut report = Report::default();
     report.times.add("adapter", whole.stop());
-    look(&mut report);
+    // With what is built where that is built for the first time, by themselves where a checkout is worked in.
+    let beside = setup && beside::begin();
+    look(&mut report, beside);
     let denied = licences::deny_if_installed();
     report.step("deny", |_| denied.unwrap_or(true));
     let workflows = workflows::check_if_installed();
@@ -67,6 +69,11 @@ pub fn test(setup: bool) -> bool {
     }
     wanted.extend(python.as_deref().map(|python| (python::NAMED, python)));
     tests(&mut report, &wanted, python.as_deref());
+    if beside {
+        beside::end();
+    } else {
+        document(&mut report);
+    }
     let missing = [
         (there.adapter, adapter::UNTESTED),
         (there.display, adapter::NO_WINDOW),
@@ -80,8 +87,8 @@ pub fn test(setup: bool) -> bool {
     report.passed()
 }
 
-/// The checks that run nothing of the program.
-fn look(report: &mut Report) {
+/// The checks that run nothing of the program; lints of all our crates unless the build runs them (`beside`).
+fn look(report: &mut Report, beside: bool) {
     let passes = |arguments: &[&str]| cargo(arguments, &[], &mut Tally::default());
     let lints = ["clippy", "--workspace", "--all-targets", "--quiet", "--", "-D", "warnings"];
     let without: Vec<&str> = ["clippy", "--quiet", "--no-deps"]
@@ -93,15 +100,16 @@ fn look(report: &mut Report) {
     report.step("names", |_| names::check());
     report.step("house", |_| house::check());
     report.step("licences", |_| licences::check());
-    report.step("lints", |_| passes(&lints));
+    if !beside {
+        report.step("lints", |_| passes(&lints));
+    }
     report.step("lints without GPUs and window", |_| bare::is_built_from_what_it_needs() && passes(&without));
 }
 
-/// Builds, then runs the test programs, the tests in Python and the examples side by side, the doc tests and the
-/// documentation.
+/// Builds, then runs the test programs, the tests in Python and the examples side by side, and the doc tests.
 fn tests(report: &mut Report, wanted: &[(&str, &str)], python: Option<&str>) {
     let mut messages = String::new();
-    if !report.step("build", |_| build(&mut messages)) {
+    if !report.step(beside::step(), |_| build(&mut messages)) {
         return;
     }
     report.step("second build", |_| nothing_is_built_again());
@@ -133,6 +141,10 @@ fn tests(report: &mut Report, wanted: &[(&str, &str)], python: Option<&str>) {
     }
     let docs = ["test", "--workspace", "--doc", "--no-fail-fast"];
     report.step("doc tests", |tally| cargo(&docs, &[], tally));
+}
+
+/// The documentation of our crates without a warning.
+fn document(report: &mut Report) {
     let documentation = ["doc", "--workspace", "--no-deps", "--quiet"];
     report.step("documentation", |tally| cargo(&documentation, &[("RUSTDOCFLAGS", "-D warnings")], tally));
 }
