@@ -6,17 +6,14 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
-use std::sync::OnceLock;
 
-use crate::cargo::root;
+use crate::cargo::{compile_through, root, wrapper};
 
 /// Set for the copy of this program that cargo calls.
 const CALLED: &str = "STRANDLINE_COMPILES_AND_LINTS";
 /// Folder of what is made here, and in it the list of builds.
 const FOLDER: &str = "target/beside";
 const KNOWN: &str = "built.txt";
-/// The copy: cargo builds this program anew while it runs.
-static COPY: OnceLock<PathBuf> = OnceLock::new();
 
 /// Lets each following call of cargo lint and document our crates; false where that is not possible, and where a plain
 /// build is there already, as in a checkout that somebody works in: ours would be compiled twice.
@@ -26,18 +23,19 @@ pub fn begin() -> bool {
     if libraries().iter().any(|name| !known.lines().any(|known| known == name)) {
         return false;
     }
+    // Cargo builds this program anew while it runs.
     let copy = folder.join("xtask");
     let made = std::fs::create_dir_all(folder.join("out"))
         .and_then(|()| std::fs::copy(std::env::current_exe()?, &copy));
     if let Err(error) = &made {
         println!("lints are not run beside the build: {error}");
     }
-    made.is_ok() && COPY.set(copy).is_ok()
+    made.is_ok() && compile_through(copy, CALLED)
 }
 
 /// Notes what was built, so that the next run tells it from a plain build.
 pub fn end() {
-    let written = COPY.get().map(|copy| std::fs::write(copy.with_file_name(KNOWN), libraries().join("\n")));
+    let written = wrapper().map(|copy| std::fs::write(copy.with_file_name(KNOWN), libraries().join("\n")));
     if let Some(Err(error)) = written {
         println!("the next run will build anew: {error}");
     }
@@ -51,16 +49,9 @@ fn libraries() -> Vec<String> {
     names.filter(|name| name.starts_with("libstrandline-") && name.ends_with(".rlib")).collect()
 }
 
-/// What a build does besides building.
+/// Name of the step that builds.
 pub fn step() -> &'static str {
-    if COPY.get().is_some() { "build, lints and documentation" } else { "build" }
-}
-
-/// Adds to a call of cargo what it needs for that, after [`begin`].
-pub fn prepare(cargo: &mut Command) {
-    if let Some(copy) = COPY.get() {
-        cargo.env("RUSTC_WORKSPACE_WRAPPER", copy).env(CALLED, "1");
-    }
+    if wrapper().is_some() { "build, lints and documentation" } else { "build" }
 }
 
 /// True where cargo calls this program in place of rustc.

@@ -2,17 +2,33 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::OnceLock;
 
 /// The repository's root.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the root")
 }
 
+/// A program that cargo calls in place of rustc for our crates, and the variable that tells it so.
+static INSTEAD: OnceLock<(PathBuf, &str)> = OnceLock::new();
+
+/// Lets each following call of cargo compile our crates through a program, for which a variable is set; once.
+pub fn compile_through(program: PathBuf, variable: &'static str) -> bool {
+    INSTEAD.set((program, variable)).is_ok()
+}
+
+/// The program of [`compile_through`].
+pub fn wrapper() -> Option<&'static Path> {
+    INSTEAD.get().map(|(program, _)| program.as_path())
+}
+
 /// Cargo in the root.
 pub fn cargo_command(arguments: &[&str]) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.args(arguments).current_dir(root());
-    crate::beside::prepare(&mut command);
+    if let Some((program, called)) = INSTEAD.get() {
+        command.env("RUSTC_WORKSPACE_WRAPPER", program).env(called, "1");
+    }
     command
 }
 

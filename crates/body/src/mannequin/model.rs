@@ -61,7 +61,7 @@ impl Mannequin {
         (distance, field.gradient.normalize_or(Vec3::Y))
     }
 
-    /// What all of the model is a function of.
+    /// Build and eyes, of which all of the model is a function.
     pub(super) fn kind(&self) -> (Build, Eyes) {
         (self.build, self.eyes)
     }
