@@ -104,7 +104,8 @@ impl LocalShifts {
     pub fn about_lanes(&self, points: &Vec3Lanes) -> [f32; LANES] {
         let cells = (Vec3x8::load(points) - Vec3x8::splat(self.origin)) * splat(self.per_metre);
         let (along, size) = (cells.array(), self.size.as_vec3());
-        let is_within = |axis: usize| along[axis].simd_ge(splat(0.0)) & along[axis].simd_lt(splat(size[axis]));
+        let is_within =
+            |axis: usize| along[axis].simd_ge(splat(0.0)) & along[axis].simd_lt(splat(size[axis]));
         let is_within = (is_within(0) & is_within(1) & is_within(2)).to_bitmask();
         let [x, y, z] = along.map(|along| along.fast_trunc_int().to_array());
         std::array::from_fn(|lane| match is_within & (1 << lane) {
