@@ -1,8 +1,8 @@
 #!/bin/sh
 # Makes the strips of bodies that move, docs/gallery/{smile,look,nod,shrug,animal}.png: contact sheets of four frames of the scenes in
-# docs/gallery/bodies and of the animal's example.
+# docs/gallery/bodies, and every sixth frame of the animal's example; docs/gallery/animal.webp is its whole stride.
 #   docs/gallery/bodies.sh
-# STRANDLINE_PROGRAM names a program that is built already.
+# STRANDLINE_PROGRAM names a program that is built already. Needs ffmpeg with libwebp.
 set -eu
 cd "$(dirname "$0")/../.."
 program=${STRANDLINE_PROGRAM:-}
@@ -15,5 +15,7 @@ for name in smile look nod shrug; do
     "$program" render --scene "docs/gallery/bodies/$name.toml" --out "out/$name"
     cp "out/$name/sheet.png" "docs/gallery/$name.png"
 done
-"$program" render --scene out/animal/animal.toml --frames 4 --fps 4 --size 320x280 --out out/animal/film
-cp out/animal/film/sheet.png docs/gallery/animal.png
+"$program" render --scene out/animal/animal.toml --frames 24 --fps 24 --size 320x280 --out out/animal/film
+ffmpeg -v error -y -i out/animal/film/frame_%04d.png -vf "select='eq(mod(n,6),5)',tile=4x1" -frames:v 1 docs/gallery/animal.png
+ffmpeg -v error -y -framerate 24 -i out/animal/film/frame_%04d.png -c:v libwebp_anim -q:v 90 -compression_level 6 -loop 0 \
+    docs/gallery/animal.webp

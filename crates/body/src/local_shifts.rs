@@ -3,6 +3,8 @@
 
 use glam::{IVec3, Vec3, Vec3A};
 use strandline_base::par::prelude::*;
+use strandline_base::vec3x8::{Vec3x8, splat};
+use strandline_base::{LANES, Vec3Lanes};
 
 /// Least edge \[m\] of a cell, and the cells around that of a point whose boxes count for it.
 const EDGE: f32 = 0.03;
@@ -98,6 +100,20 @@ impl LocalShifts {
         if is_within { self.shifts[self.index(cell.as_ivec3())] } else { 0.0 }
     }
 
+    /// The same for eight points.
+    pub fn about_lanes(&self, points: &Vec3Lanes) -> [f32; LANES] {
+        let cells = (Vec3x8::load(points) - Vec3x8::splat(self.origin)) * splat(self.per_metre);
+        let (along, size) = (cells.array(), self.size.as_vec3());
+        let is_within =
+            |axis: usize| along[axis].simd_ge(splat(0.0)) & along[axis].simd_lt(splat(size[axis]));
+        let is_within = (is_within(0) & is_within(1) & is_within(2)).to_bitmask();
+        let [x, y, z] = along.map(|along| along.fast_trunc_int().to_array());
+        std::array::from_fn(|lane| match is_within & (1 << lane) {
+            0 => 0.0,
+            _ => self.shifts[self.index(IVec3::new(x[lane], y[lane], z[lane]))],
+        })
+    }
+
     fn cell(&self, place: Vec3) -> IVec3 {
         // Rounded toward 0: what lies below 0 is clamped.
         ((place - self.origin) * self.per_metre).as_ivec3().clamp(IVec3::ZERO, self.size - 1)
@@ -156,6 +172,11 @@ mod tests {
             let brute = boxes.iter().filter(is_near).map(|(_, shift)| shift.sqrt()).fold(0.0, f32::max);
             let found = shifts.about(point);
             assert!(found >= brute, "{found} at {point}, {brute} by all boxes");
+            let mut lanes = Vec3Lanes::splat(Vec3::NAN);
+            lanes.set(index % LANES, point);
+            let mut expected = [0.0; LANES];
+            expected[index % LANES] = found;
+            assert_eq!(shifts.about_lanes(&lanes), expected, "{point}");
             (least, most) = (least.min(found), most.max(found));
         }
         assert!(least == 0.0 && most > 0.003, "{least} {most}: the bound is local");

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::{Mat3, Vec3, Vec3A};
 use strandline_base::par::prelude::*;
+use strandline_base::{LANES, Vec3Lanes};
 
 use crate::local_shifts::LocalShifts;
 use crate::nearest_corner::{Feature, nearest_on};
@@ -138,10 +139,15 @@ impl PosedSkin {
         self.shifts.as_ref().map_or(self.most_shift, |shifts| shifts.about(point))
     }
 
-    /// Lower bound \[m\] of the distance at the end of a point \[m\], head space, that was at least `distance` \[m\] from the
-    /// skin at the start.
-    pub fn at_least_after(&self, point: Vec3, distance: f32) -> f32 {
-        let near = distance - self.shift_about(point);
+    /// The same for eight points.
+    pub fn shifts_about(&self, points: &Vec3Lanes) -> [f32; LANES] {
+        self.shifts.as_ref().map_or([self.most_shift; LANES], |shifts| shifts.about_lanes(points))
+    }
+
+    /// Lower bound \[m\] of the distance at the end of a point that was at least `distance` \[m\] from the skin at the start, by
+    /// its [`Self::shift_about`] \[m\].
+    pub fn at_least_after(&self, distance: f32, shift: f32) -> f32 {
+        let near = distance - shift;
         // Skin that ends within the reach of the ways about a point has moved no more than these.
         let reach = self.shifts.as_ref().map_or(f32::INFINITY, LocalShifts::reach);
         near.min(reach.max(distance - self.most_shift))

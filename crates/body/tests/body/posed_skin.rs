@@ -243,7 +243,7 @@ fn a_bound_carried_through_a_step_is_no_more_than_the_distance_after_it() {
         if was < 0.0 {
             continue;
         }
-        let least = step.at_least_after(point, was);
+        let least = step.at_least_after(was, step.shift_about(point));
         assert!(least <= is + 1e-6, "{point}: {least} m at least, from {was} m to {is} m");
         tight = tight.max(was - is - (was - least));
         held += usize::from(was - least < 0.25 * step.most_shift());

@@ -76,7 +76,8 @@ impl Contacts {
 
 fn ride(plane: &mut Plane, rider: &mut Plane, skin: &PosedSkin) {
     let most = skin.most_shift();
-    for lane in 0..LANES {
+    let shifts = if most == 0.0 { [0.0; LANES] } else { skin.shifts_about(&plane.anchor) };
+    for (lane, shift) in shifts.into_iter().enumerate() {
         if !plane.distance.0[lane].is_finite() {
             continue;
         }
@@ -88,11 +89,10 @@ fn ride(plane: &mut Plane, rider: &mut Plane, skin: &PosedSkin) {
         }
         let distance = plane.distance.0[lane];
         if distance > CLOSE {
-            plane.distance.0[lane] = skin.at_least_after(anchor, distance);
+            plane.distance.0[lane] = skin.at_least_after(distance, shift);
             rider.anchor.set(lane, skin.drift(triangle));
             continue;
         }
-        let shift = skin.shift_about(anchor);
         if shift < STILL && most < SLOW {
             rider.anchor.set(lane, Vec3::ZERO);
             rider.distance.0[lane] += (OF_ERROR + OF_SHIFT) * shift;
