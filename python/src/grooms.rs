@@ -128,6 +128,7 @@ pub fn groom(of: &Bound<'_, PyDict>) -> PyResult<Groom> {
         masses: attribute::<f32>(of, "masses", &[None])?,
         velocities: vectors(rows::<3>(of, "velocities")?),
         numbers: None,
+        files: std::collections::BTreeMap::new(),
     };
     groom.check_lengths().map_err(|error| errors::refused(py, &error.into()))?;
     Ok(groom)

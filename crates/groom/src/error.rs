@@ -92,8 +92,11 @@ pub enum GroomError {
 }
 
 impl GroomError {
-    /// Adds the path to an error about content.
+    /// Adds the path to an error about content, unless it has one.
     pub(crate) fn of(self, path: &Path) -> Self {
-        Self::In { path: path.to_owned(), source: Box::new(self) }
+        match self {
+            Self::In { .. } => self,
+            error => Self::In { path: path.to_owned(), source: Box::new(error) },
+        }
     }
 }

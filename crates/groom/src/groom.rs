@@ -1,4 +1,4 @@
-use std::{collections::BTreeMap, ops::Range};
+use std::{collections::BTreeMap, ops::Range, path::PathBuf};
 
 use glam::{Quat, Vec2, Vec3};
 use strandline_base::SettingError;
@@ -60,6 +60,9 @@ pub struct Groom {
     /// The number of each strand in its file, from 0, where others of the file were left out or strands are of several
     /// files: shape `[strand]`.
     pub numbers: Option<Vec<u32>>,
+    /// Files that were read as one groom, by the number of their first strand; numbers of strands then count through
+    /// all of them.
+    pub files: BTreeMap<u32, PathBuf>,
 }
 
 impl Groom {
@@ -80,6 +83,7 @@ impl Groom {
             masses: None,
             velocities: None,
             numbers: None,
+            files: BTreeMap::new(),
         }
     }
 

@@ -1,5 +1,7 @@
 //! Grooms made of strands of others: a selection, or the union of two.
 
+use std::path::Path;
+
 use glam::Vec3;
 
 use crate::{Groom, Widths};
@@ -25,8 +27,33 @@ impl Groom {
 
     /// The number of a strand in its file, from 0.
     pub fn number(&self, strand: usize) -> usize {
+        self.origin(strand).0
+    }
+
+    /// The number of a strand in its file, from 0, and the file where the groom was read from several.
+    pub(crate) fn origin(&self, strand: usize) -> (usize, Option<&Path>) {
         let numbers = self.numbers.as_deref().unwrap_or_default();
-        numbers.get(strand).map_or(strand, |number| *number as usize)
+        let number = numbers.get(strand).map_or(strand, |number| *number as usize);
+        match self.files.range(..=number as u32).next_back() {
+            Some((first, file)) => (number - *first as usize, Some(file)),
+            None => (number, None),
+        }
+    }
+
+    /// A strand in a note: its number in its file, with the file where the groom was read from several.
+    pub(crate) fn numbered(&self, strand: usize) -> String {
+        match self.origin(strand) {
+            (number, Some(file)) => format!("{number} of {}", file.display()),
+            (number, None) => number.to_string(),
+        }
+    }
+
+    /// Gives strands of several files the numbers that they have in their own, which no longer name the files.
+    fn leave_files(&mut self) {
+        if !self.files.is_empty() {
+            self.numbers = Some((0..self.strand_count()).map(|strand| self.number(strand) as u32).collect());
+            self.files.clear();
+        }
     }
 
     /// Some strands by their indices, in the order given, with everything that they have.
@@ -56,6 +83,7 @@ impl Groom {
         let is_counted =
             |all: &Vec<u32>| all.iter().enumerate().all(|(strand, number)| *number as usize == strand);
         groom.numbers = numbers.filter(|all| !is_counted(all));
+        groom.files.clone_from(&self.files);
         groom
     }
 
@@ -84,7 +112,9 @@ impl Groom {
 
     /// Adds the strands of another groom behind these. Attributes of only one of the two are lost, but for widths and
     /// names of groups.
-    pub fn append(&mut self, other: Self) {
+    pub fn append(&mut self, mut other: Self) {
+        self.leave_files();
+        other.leave_files();
         match &mut self.widths {
             Widths::PerPoint(own) => own.extend(other.point_widths()),
             _ => self.widths = self.joined_widths(&other),

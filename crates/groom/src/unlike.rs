@@ -36,7 +36,7 @@ impl Groom {
             let first = strands.next()?;
             let count = 1 + strands.count();
             let strands = counted(count, "strand is", "strands are");
-            let first = self.number(first);
+            let first = self.numbered(first);
             (count as f32 <= few)
                 .then(|| format!("{strands} {words}, the first is {first}: left as in the file"))
         };

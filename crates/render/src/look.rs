@@ -152,8 +152,8 @@ settings! {
     pub struct Shadow: Copy {
         /// Texels along each side of a light's maps; on a GPU at most 2,048 with two shadow lights, 1,024
         /// with eight. 0 chooses them by the hair: 512, and for dense light hair, which 512 draw up to 0.2 darker than path
-        /// tracing does, 1,536 with up to three places of lights with shadow and 1,024 with up to eight; a browser page has
-        /// 1,024 with up to two. Fewer than 16 count as 16.
+        /// tracing does, 1,536 with up to three places of lights with shadow, then fewer, 1,408 with four, 1,152 with six and
+        /// 1,024 with eight; a browser page has 1,408 with one and 1,024 with two. Fewer than 16 count as 16.
         map_size: u32 = 0, in [0, 4096], slider [0, 2048], more "sharper shadows, at a cost in time and memory";
         /// Distances behind the first hair at which the three layers end, rising; hair farther behind it
         /// casts no shadow.

@@ -10,9 +10,12 @@ use crate::lights::shadow_places;
 use crate::strands::clump::widening;
 use crate::{Light, Look, OwnColors, Shadow};
 
-/// Texels along a side of most maps, and of the maps of dense light hair: the largest that the lights leave room for.
+/// Texels along a side of most maps.
 const USUAL: u32 = 512;
-const FINE: [u32; 2] = [1536, 1024];
+/// Most and fewest texels along a side of the maps of dense light hair, and between sizes: the lights share the room.
+const FINEST: u32 = 1536;
+const COARSEST: u32 = 1024;
+const STEP: u32 = 64;
 /// Most texels of all fine maps: a GPU within WebGPU's default limits holds as many, a browser page a quarter.
 const MOST_TEXELS: u64 = if usize::BITS < 64 { 1 << 21 } else { 1 << 23 };
 /// Fewest texels along a side.
@@ -39,31 +42,34 @@ impl Look {
     /// coat, with the texels of shadow maps chosen.
     pub(crate) fn drawn(&self, lights: &[Light], own: Option<&OwnColors>, guides: &Guides) -> Cow<'_, Self> {
         let mut look = self.under_coat();
-        let size = look.map_size(shadow_places(lights, look.suns()), own, Some(guides));
+        let places = shadow_places(lights, look.suns());
+        let size = look.map_size(places, own.map(|own| own.mean), Some(guides));
         if size != look.shadow.map_size {
             look.to_mut().shadow.map_size = size;
         }
         look
     }
 
-    /// Texels along each side of the maps of so many places of lights with shadow; hair without guides is taken as dense.
-    pub(crate) fn map_size(&self, places: u64, own: Option<&OwnColors>, guides: Option<&Guides>) -> u32 {
+    /// Texels along each side of the maps of so many places of lights with shadow, of hair with a mean of its own colours or
+    /// none; hair without guides is taken as dense.
+    pub(crate) fn map_size(&self, places: u64, own: Option<Vec3>, guides: Option<&Guides>) -> u32 {
         if self.shadow.map_size > 0 || !self.is_light(own) {
             return self.shadow.size();
         }
         if guides.is_some_and(|guides| self.layers(guides) < DENSE) {
             return USUAL;
         }
-        let fits = |size: &u32| places * u64::from(*size).pow(2) <= MOST_TEXELS;
-        FINE.into_iter().find(fits).unwrap_or(USUAL)
+        let most = (MOST_TEXELS / places.max(1)).isqrt() as u32;
+        let size = (most - most % STEP).min(FINEST);
+        if size < COARSEST { USUAL } else { size }
     }
 
     /// True for hair that is light in a channel as a whole: most of what it shows has been scattered often.
-    fn is_light(&self, own: Option<&OwnColors>) -> bool {
+    fn is_light(&self, own: Option<Vec3>) -> bool {
         let fibre = &self.fibre.chiang;
         let absorption = match (own, fibre.pigment) {
             _ if !self.fibre.model.scatters_many_times() => return false,
-            (Some(own), _) => fibre.absorption_of_color(own.mean),
+            (Some(own), _) => fibre.absorption_of_color(own),
             (None, _) if self.grey >= LIGHT_GREY => return true,
             (None, Pigment::Color) => fibre.absorption_of_color(0.5 * (self.root_color + self.tip_color)),
             (None, Pigment::Melanin) => {
@@ -123,8 +129,8 @@ mod tests {
             assert_eq!(size(&look, 1, None), if is_dark { 512 } else { 1536 }, "{preset:?}");
         }
         let blonde = Look::blonde();
-        let sizes = [0, 3, 4, 8, 9, 64].map(|count| size(&blonde, count, None));
-        assert_eq!(sizes, [1536, 1536, 1024, 1024, 512, 512]);
+        let sizes = [0, 3, 4, 6, 8, 9, 64].map(|count| size(&blonde, count, None));
+        assert_eq!(sizes, [1536, 1536, 1408, 1152, 1024, 512, 512]);
         // Light that casts no shadow has no map; a soft box has one for each place.
         let none = Light { shadow: false, ..Light::default() };
         let soft = Light { kind: LightKind::Disc, samples: 3, ..Light::default() };

@@ -1,5 +1,6 @@
 //! Memory of a picture, and limits of what can be drawn.
 
+use glam::Vec3;
 use strandline_base::{
     SettingError,
     memory::{self, Need},
@@ -41,6 +42,8 @@ pub struct Drawn<'a> {
     pub lights: &'a [Light],
     /// Size of the picture.
     pub picture: &'a PictureSettings,
+    /// Mean of the colours that the hair has of its own, linear RGB; `None` for those of the look.
+    pub own_color: Option<Vec3>,
 }
 
 impl Drawn<'_> {
@@ -60,7 +63,7 @@ impl Drawn<'_> {
         let follow_strands = self.look.follow_strands;
         let drawn = format!("look.follow_strands = {follow_strands} on each of {} guides", self.guide_count);
         let shadows = shadow_places(self.lights, self.look.suns());
-        let size = u64::from(self.look.map_size(shadows, None, None));
+        let size = u64::from(self.look.map_size(shadows, self.own_color, None));
         let maps = format!("look.shadow.map_size = {size} for each of {shadows} lights with shadow");
         let texel = TEXEL_BYTES + PART_BYTES * part_count() as u64;
         let PictureSettings { width, height, supersampling, .. } = self.picture;
@@ -120,8 +123,14 @@ mod tests {
         let lights = [Light::default(); 32];
         let (picture, full) = (PictureSettings::sized(64, 64), LevelOfDetail::full());
         let drawn = |look: &Look, guide_count| {
-            let drawn =
-                Drawn { guide_count, points_per_strand: 16, look, lights: &lights, picture: &picture };
+            let drawn = Drawn {
+                guide_count,
+                points_per_strand: 16,
+                look,
+                lights: &lights,
+                picture: &picture,
+                own_color: None,
+            };
             drawn.check(&full.level(0.0, look.follow_strands)).map_err(|error| error.to_string())
         };
         assert_eq!(drawn(&Look::brown(), 2000), Ok(()));
@@ -130,5 +139,28 @@ mod tests {
         assert!(drawn(&look, 1000).unwrap_err().starts_with("look.follow_strands = 1024 on each of 1000"));
         let look = Look { shadow: maps, ..Look::brown() };
         assert!(drawn(&look, 10).unwrap_err().starts_with("look.shadow.map_size = 4096 for each of 32"));
+    }
+
+    #[test]
+    fn light_colors_of_its_own_give_dark_hair_the_texels_of_light_hair() {
+        let (look, picture) = (Look::brown(), PictureSettings::sized(64, 64));
+        let texels = |own_color| {
+            let lights = &[Light::default()];
+            let drawn = Drawn {
+                guide_count: 100,
+                points_per_strand: 16,
+                look: &look,
+                lights,
+                picture: &picture,
+                own_color,
+            };
+            let needs = drawn.memory(&LevelOfDetail::full());
+            let maps = needs.iter().map(|need| &need.what).find(|what| what.contains("map_size"));
+            maps.unwrap().clone()
+        };
+        let colors = [None, Some(Vec3::splat(0.05)), Some(Vec3::new(0.6, 0.4, 0.2))];
+        let sizes = [512, 512, 1536]
+            .map(|size| format!("look.shadow.map_size = {size} for each of 1 lights with shadow"));
+        assert_eq!(colors.map(texels), sizes);
     }
 }

@@ -148,13 +148,13 @@ impl Strays {
     /// Notes on both kinds, with numbers of the file of the groom.
     fn notes(&self, groom: &Groom, done: &str) -> Vec<String> {
         let mut notes = Vec::new();
-        if let Some(first) = self.strands.first().map(|strand| groom.number(*strand)) {
+        if let Some(first) = self.strands.first().map(|strand| groom.numbered(*strand)) {
             let strands = counted(self.strands.len(), "strand reaches", "strands reach");
             notes.push(format!("{strands} far from all others, the first is {first}: {done}"));
         }
         if let Some(first) = self.dummies.first() {
             let strand = groom.starts.partition_point(|start| *start as usize <= *first) - 1;
-            let (point, strand) = (first - groom.range(strand).start, groom.number(strand));
+            let (point, strand) = (first - groom.range(strand).start, groom.numbered(strand));
             let points = counted(self.dummies.len(), "dummy point lies", "dummy points lie");
             notes.push(format!(
                 "{points} at the origin, the first is point {point} of strand {strand}: {done}"

@@ -1,3 +1,4 @@
+use std::collections::BTreeMap;
 use std::f32::consts::{FRAC_PI_2, PI};
 use std::path::{Path, PathBuf};
 
@@ -222,13 +223,14 @@ fn joined(
     parts: impl Iterator<Item = (PathBuf, String)>,
     options: &LoadOptions,
 ) -> Result<Parsed, GroomError> {
-    let mut whole: Option<Parsed> = None;
+    let (mut whole, mut files): (Option<Parsed>, _) = (None, BTreeMap::new());
     let mut taken = 0;
     for (path, name) in parts {
         let mut part = parse(&path, options)?;
         taken = regroup(&mut part.groom, &name, taken);
         part.problems.iter_mut().for_each(|problem| *problem = format!("{name}: {problem}"));
         let Some(whole) = &mut whole else {
+            add_files(&mut files, 0, &part.groom, path);
             whole = Some(part);
             continue;
         };
@@ -252,10 +254,22 @@ fn joined(
                 whole.problems.push(format!("{name}: {has} {}: left out", lost.name()));
             }
         }
+        add_files(&mut files, whole.groom.strand_count(), &part.groom, path);
         whole.groom.append(part.groom);
         whole.problems.append(&mut part.problems);
     }
-    whole.ok_or(GroomError::Empty)
+    let mut whole = whole.ok_or(GroomError::Empty)?;
+    (whole.groom.numbers, whole.groom.files) = (None, files);
+    Ok(whole)
+}
+
+/// Adds the files of a part whose strands stand behind `strands` others: its own where it was read from several.
+fn add_files(files: &mut BTreeMap<u32, PathBuf>, strands: usize, part: &Groom, path: PathBuf) {
+    let strands = strands as u32;
+    if part.files.is_empty() {
+        files.insert(strands, path);
+    }
+    files.extend(part.files.iter().map(|(first, file)| (strands + first, file.clone())));
 }
 
 /// Gives the groups of a file numbers from `first` on, those of several files each their own; strands without a group

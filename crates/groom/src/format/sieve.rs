@@ -32,7 +32,12 @@ pub fn sieve(groom: Groom, strict: bool, problems: &mut Vec<String>) -> Result<G
         (0..groom.strand_count()).map(|strand| fault(&groom, strand, lengths[strand], shortest)).collect();
     if strict && let Some((strand, fault)) = faults.iter().enumerate().find_map(|(i, f)| Some((i, (*f)?))) {
         let (found, expected) = FAULTS[fault];
-        return Err(GroomError::Strand { strand, found, expected });
+        let (strand, file) = groom.origin(strand);
+        let error = GroomError::Strand { strand, found, expected };
+        return Err(match file {
+            Some(file) => error.of(file),
+            None => error,
+        });
     }
     for (kind, (text, _)) in FAULTS.iter().enumerate() {
         let bad: Vec<usize> = (0..faults.len()).filter(|strand| faults[*strand] == Some(kind)).collect();
@@ -41,7 +46,8 @@ pub fn sieve(groom: Groom, strict: bool, problems: &mut Vec<String>) -> Result<G
                 counted(bad.len(), "strand", "strands"),
                 if bad.len() == 1 { "it is" } else { "the first are" },
             );
-            problems.push(format!("{left} left out: each {text}; {are} {first:?}"));
+            let first: Vec<String> = first.iter().map(|strand| groom.numbered(*strand)).collect();
+            problems.push(format!("{left} left out: each {text}; {are} [{}]", first.join(", ")));
         }
     }
     if faults.iter().all(Option::is_none) {

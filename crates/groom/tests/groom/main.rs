@@ -3,5 +3,6 @@
 mod attributes;
 mod bound;
 mod formats;
+mod several;
 mod strangers;
 mod styles;

@@ -89,7 +89,8 @@ impl FrameInput<'_> {
         level: &DetailLevel,
         picture: &PictureSettings,
     ) -> Result<(), RenderError> {
+        // The texels of shadow maps are chosen already.
         let Self { look, lights, .. } = *self;
-        Drawn { guide_count, points_per_strand, look, lights, picture }.check(level)
+        Drawn { guide_count, points_per_strand, look, lights, picture, own_color: None }.check(level)
     }
 }

@@ -42,7 +42,8 @@ pub(crate) fn prepared(scene: &Scene, cache: &mut Cache) -> Result<Prepared, Err
     look.group.clear();
     (look.color_map, look.width_map) = (None, None);
     scene.groom.length = 1.0;
-    crate::prepare::memory::check(&scene, groom.strand_count(), groom.strand_count())?;
+    let count = groom.strand_count();
+    crate::prepare::memory::check(&scene, count, count, groom.colors.as_deref())?;
     prepared.guides = Guides::resample(&groom, points.min(POINTS))?;
     (prepared.bound, prepared.pose, prepared.tags) = (None, None, Tags::default());
     prepared

@@ -30,7 +30,7 @@ pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
     let Loading { scene, groom: Some(groom), notes, .. } = loading else { return Ok(()) };
     let chosen = choose(scene, groom, notes);
     let simulated = chosen.as_ref().map_or(groom.strand_count(), Vec::len);
-    memory::check(scene, simulated, groom.strand_count())?;
+    memory::check(scene, simulated, groom.strand_count(), groom.colors.as_deref())?;
     let resampled = |groom: &Groom| resampled(scene, groom, loading.shape.as_ref(), loading.is_grown);
     let mut all = resampled(groom)?;
     let mut guides = match &chosen {

@@ -80,7 +80,7 @@ impl<'a> Loading<'a> {
         if scene.groom.file.is_none() {
             let drawn = scene.grown_strands();
             let drawn = drawn + scene.style.strands_beside(drawn);
-            memory::check(scene, scene.style.strand_count, drawn)?;
+            memory::check(scene, scene.style.strand_count, drawn, None)?;
         }
         Ok(Self {
             sources,

@@ -70,9 +70,15 @@ pub(super) fn noted(scene: &Scene, placings: &Placings, has_body: bool, width: O
     }
     let is_unsure = placings.confidence < UNSURE;
     let rival = placings.rival.filter(|_| is_unsure && has_groom);
-    let is_open = scene.groom.up == Up::Auto || scene.groom.scale == Scale::Auto;
-    if is_unsure && is_open && has_groom && has_body && words.is_empty() {
-        words.push("axes and units are those of the files".to_owned());
+    // A given part is not the files'.
+    let open = match (scene.groom.up == Up::Auto, scene.groom.scale == Scale::Auto) {
+        (true, true) => Some("axes and units are"),
+        (true, false) => Some("axes are"),
+        (false, true) => Some("units are"),
+        (false, false) => None,
+    };
+    if let Some(open) = open.filter(|_| is_unsure && has_groom && has_body && words.is_empty()) {
+        words.push(format!("{open} those of the files"));
     }
     if placings.is_against {
         words.push("the groom is placed otherwise than the format of its file defines".to_owned());
@@ -89,4 +95,27 @@ pub(super) fn noted(scene: &Scene, placings: &Placings, has_body: bool, width: O
     });
     let note = || format!("taken from the files{unsure}: {}{rival}; {keys}{strange}", words.join(", "));
     (!words.is_empty()).then(note).into_iter().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn given_axes_and_units_are_not_said_to_be_those_of_the_files() {
+        let said = |up: Up, scale: Scale| {
+            let mut scene = Scene::default();
+            scene.groom.file = Some("hair.npz".into());
+            (scene.groom.up, scene.groom.scale) = (up, scale);
+            noted(&scene, &Placings::new(0.3), true, None).concat()
+        };
+        let given = Scale::Factor(0.01);
+        let both = said(Up::Auto, Scale::Auto);
+        assert!(both.contains("not sure: axes and units are those of the files;"), "{both}");
+        let axes = said(Up::Auto, given);
+        assert!(axes.contains("not sure: axes are those of the files;"), "{axes}");
+        let units = said(Up::Z, Scale::Auto);
+        assert!(units.contains("not sure: units are those of the files;"), "{units}");
+        assert_eq!(said(Up::Z, given), "");
+    }
 }
