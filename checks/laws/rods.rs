@@ -159,8 +159,8 @@ law! {
             let angle = 0.5 * turn * (1.0 - (std::f32::consts::TAU * along).cos());
             Pose::rotation_about(Vec3::new(0.0, -0.1, 0.0), Quat::from_rotation_y(angle))
         };
-        let six = [Style::Wavy, Style::Ponytail, Style::Bob, Style::Curly, Style::Long, Style::Pixie];
-        for name in styles(six, on.short(on.brief([6, 9], [2, 0]), [1, 0])) {
+        let styles = [Style::Wavy, Style::Ponytail, Style::Bob, Style::Curly, Style::Long, Style::Pixie];
+        for name in styles.into_iter().take(on.short(on.brief(6, 2), 1)) {
             // Rubbing of 0.2 m/s^2 and a body that holds hair by 0.3 of its weight; and without rubbing.
             for (friction, rubbing, bound) in [(0.3, 0.2, 3e-2), (0.0, 0.0, 2e-2)] {
                 let mut settings = settings(StrandMethod::Rods, 1.0 / 60.0);

@@ -7,7 +7,7 @@ use strandline_sim::{Drive, Model, State, StrandMethod, rods::Rest};
 
 use crate::rod_mechanics::{model, rods};
 use crate::rod_waves::{LENGTH, TIP, hanging};
-use crate::rods::{settings, style, styles};
+use crate::rods::{settings, style};
 use crate::strands::{first, line, one_strand};
 
 /// Fall \[m\] of the tip of a horizontal hair of 10 cm in a time \[s\].
@@ -38,8 +38,8 @@ law! {
 
 law! {
     fn hair_at_rest_stays_in_steps_of_any_length(on) {
-        let six = [Style::Curly, Style::Long, Style::Ponytail, Style::Bob, Style::Wavy, Style::Pixie];
-        for name in styles(six, on.brief(on.either([6, 9], [1, 0]), [1, 1])) {
+        let styles = [Style::Curly, Style::Long, Style::Ponytail, Style::Bob, Style::Wavy, Style::Pixie];
+        for name in styles.into_iter().take(on.brief(on.either(6, 1), 2)) {
             for time_step in [0.1, 1.0 / 60.0, 1.0 / 960.0, 5e-5, 1e-5] {
                 let mut settings = settings(StrandMethod::Rods, time_step);
                 settings.volume.enabled = false;
