@@ -4,4 +4,5 @@ mod attributes;
 mod bound;
 mod formats;
 mod strangers;
+mod style_roots;
 mod styles;
