@@ -6,7 +6,7 @@ use strandline_checks::{On, in_full, law};
 use strandline_groom::{LANES, Style};
 use strandline_sim::{Model, State, StrandMethod};
 
-use crate::rods::{drifts, settings, speeds, stepped, style};
+use crate::rods::{drifts, settings, speeds, stepped, style, styles};
 
 /// Tips of all strands \[m\].
 fn tips(model: &Model, state: &State) -> Vec<Vec3> {
@@ -55,10 +55,10 @@ const APART_ON_GPU: f32 = 3e-2;
 
 law! {
     long fn shaken_hair_comes_to_rest_where_it_was(on) {
-        let styles = [Style::Wavy, Style::Long, Style::Curly, Style::Ponytail, Style::Bob, Style::Pixie];
+        let six = [Style::Wavy, Style::Long, Style::Curly, Style::Ponytail, Style::Bob, Style::Pixie];
         let shake = |time: f64| Motion::Shake.pose(time.min(1.0), Vec3::new(0.0, -0.1, 0.0));
         let on_cpu = matches!(on, On::Cpu);
-        for name in styles.into_iter().take(on.brief(on.short(6, 2), 2)) {
+        for name in styles(six, on.brief(on.short([6, 9], [2, 0]), [1, 1])) {
             // A software adapter has a volume with the first alone, in one step, and looks after four seconds.
             let first = name == Style::Wavy;
             // All four rates in `cargo xtask long`: that of 1/480 s takes half of the time.
@@ -75,6 +75,8 @@ law! {
                 assert!(moved < speed && stored < speed, "{name:?}, 1/{rate} s: {moved} m/s, stored {stored} m/s");
                 let (mean, error, middle) = drift_of_all(&model, &state);
                 let sampled = if on_cpu { 0.0 } else { SAMPLED * error };
+                // Found on the CPU of the nine: .44 % of coils, .42 of a bun, .35 of side-swept hair, .17 of a braid, .03 of an
+                // afro, and .01 and less of a buzz cut and hair of the face.
                 assert!(mean - sampled < 3e-2, "{name:?}, 1/{rate} s: {mean} from where it was, within {error}");
                 assert!(middle < 2e-2, "{name:?}, 1/{rate} s: that in the middle {middle} from where it was");
                 let end = tips(&model, &state);

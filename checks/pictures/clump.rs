@@ -76,6 +76,21 @@ law! {
 }
 
 law! {
+    fn follow_strands_keep_off_their_guide_where_they_are_lifted(on) {
+        let least = |lift: f32| {
+            let strands = clumps(Clump { lift, ..STRAIGHT }, 65).strands(on);
+            let last = strands.points_per_strand - 1;
+            let radius = |point: usize| 0.008 + (0.002 - 0.008) * point as f32 / last as f32;
+            let shares = distances(&strands).into_iter().enumerate().skip(last / 4);
+            shares.flat_map(|(point, found)| found.into_iter().map(move |one| one / radius(point))).fold(1.0, f32::min)
+        };
+        // Of 64 in the disc the nearest else lies at an eighth of its radius.
+        let (lifted, plain) = (least(0.85), least(0.0));
+        assert!(lifted > 0.3 * 0.85 - 1e-3 && plain < 0.2, "{lifted}, not lifted {plain}");
+    }
+}
+
+law! {
     fn a_group_has_clumps_and_waves_of_its_own_size(on) {
         let clump = Clump { wave_amplitude: 0.001, lift: 0.85, ..STRAIGHT };
         let [whole, spread] = [false, true].map(|is_own| {

@@ -153,13 +153,12 @@ fn no_scalp_is_seen_through_hair_from_a_metre() {
         }
         let share = open / haired;
         println!("{}: {:.2} % bare, {:.2} % in the worst view", style.name(), 100.0 * share, 100.0 * worst);
-        // 2 % is asked for in all views. Not met, known faults of docs/gallery.md: an afro shows 6.2 % in all and 7.1 from
-        // one side, tied hair 4.9 to 5.0 from one; 2.2 to 2.3 from one were seen of a pixie, coils and long hair.
+        // 2 % is asked for in all views. Not met, known faults of docs/gallery.md: an afro from all sides, and tied hair from
+        // the front, over the first three centimetres behind the hairline.
         let [all_views, one] = match style {
-            Style::Afro => [0.065, 0.075],
-            Style::Ponytail | Style::Bun | Style::Braid => [0.02, 0.052],
-            Style::Long | Style::Coils => [0.02, 0.0235],
-            _ => [0.02, 0.022],
+            Style::Afro => [0.025, 0.03],
+            Style::Ponytail | Style::Bun | Style::Braid => [0.02, 0.03],
+            _ => [0.02, 0.02],
         };
         failed.extend((share > all_views || worst > one).then_some((style, share, worst)));
     }

@@ -32,6 +32,8 @@ const FRONT_FROM: f32 = 0.012;
 /// Place behind an ear, on the side of positive x, to which hair is led that falls behind it \[m\]. Hair with roots farther
 /// back falls there by itself.
 const BEHIND_EAR: Vec3 = Vec3::new(0.072, 0.004, -0.042);
+/// Distance \[m\] from that place, seen from the side, at which hair has reached it.
+const AT_EAR: f32 = 0.016;
 /// Hair has passed an ear below this height and behind this place \[m\].
 const PAST_EAR: (f32, f32) = (0.020, -0.034);
 /// From this height \[m\] on the skull the hair no longer heeds the parting.
@@ -70,6 +72,8 @@ pub struct Combed {
     pub tied: bool,
     /// True while it is on its way to the place behind the ear.
     pub led: bool,
+    /// 1 for a strand that falls before the shoulder, -1 behind it.
+    curtain: f32,
 }
 
 impl Combed {
@@ -80,12 +84,16 @@ impl Combed {
         let side = if across < 0.0 { -1.0 } else { 1.0 };
         let side = if in_fringe(settings, &root) { 0.0 } else { side };
         let led = settings.leads_behind_ears() && side != 0.0 && root.position.z > BEHIND_EAR.z;
-        Self { root, side, place, tied: false, led }
+        // Hair that was led behind the ear stays behind the shoulder.
+        let before = root.position.z > FRONT_FROM && !led;
+        Self { root, side, place, tied: false, led, curtain: if before { 1.0 } else { -1.0 } }
     }
 
     /// Takes note of the place \[m\] that the strand has reached.
     pub fn pass(&mut self, point: Vec3) {
         self.led &= point.y > PAST_EAR.0 || point.z > PAST_EAR.1;
+        // Hair in thick layers passes the place far outside of it.
+        self.led &= (point - BEHIND_EAR).with_x(0.0).length() > AT_EAR;
     }
 
     /// True for a strand of the fringe.
@@ -223,23 +231,18 @@ impl Combed {
         Vec3::new(side * 3.0, 0.3, -1.5) * inside.min(0.8)
     }
 
-    /// 1 for strands that fall before the shoulder, -1 behind it.
-    fn curtain(&self) -> f32 {
-        if self.root.position.z > FRONT_FROM { 1.0 } else { -1.0 }
-    }
-
     /// In good time before or behind the shoulder.
     fn toward_curtain(&self, point: Vec3) -> Vec3 {
         let level = smooth(-0.21, -0.17, point.y);
         let forward = 0.32 * smooth(-0.06, -0.13, point.y);
         let backward = -0.50 * smooth(0.01, -0.08, point.y) * smooth(-0.105, -0.06, point.z);
-        Vec3::new(0.0, 0.0, if self.curtain() > 0.0 { forward } else { backward } * level)
+        Vec3::new(0.0, 0.0, if self.curtain > 0.0 { forward } else { backward } * level)
     }
 
     /// Hair that rests on the shoulder slides off it to the front or the back, not outward.
     fn off_shoulder(&self, place: Place) -> Vec3 {
         let inward = -0.25 * place.point.x.signum() * smooth(0.07, 0.13, place.point.x.abs());
-        place.along(Vec3::new(inward, -0.45, 0.9 * self.curtain()))
+        place.along(Vec3::new(inward, -0.45, 0.9 * self.curtain))
     }
 
     /// The ends turn toward the neck.

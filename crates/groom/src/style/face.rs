@@ -17,6 +17,8 @@ const TRIALS: usize = 400;
 const JAW: Vec3 = Vec3::new(0.0, -0.060, 0.010);
 /// Inner and outer end of a brow on the side of positive x, half its breadth, and the height of its arch \[m\].
 const BROW: ([Vec2; 2], f32, f32) = ([Vec2::new(0.013, 0.000), Vec2::new(0.052, 0.001)], 0.0042, 0.0065);
+/// Share of the length of a brow along which it grows dense, at its middle a third of it.
+const BROW_BEGINS: f32 = 0.22;
 
 /// Height \[m\] by which the border of a beard on the cheek is uneven.
 const UNEVEN: f32 = 0.0016;
@@ -76,11 +78,13 @@ fn root(settings: &StyleSettings, skin: &Skin, index: usize) -> (Root, f32) {
     for _ in 0..TRIALS {
         let [first, second, chance, side] = std::array::from_fn(|_| random.unit());
         let side = if side < 0.5 { -1.0 } else { 1.0 };
+        let mut across = (0.0, 0.0);
         let (start, way) = match settings.style {
             Style::Brows => {
                 let ([inner, outer], breadth, arch) = BROW;
                 let middle = inner.lerp(outer, first) + Vec2::Y * arch * math::sin(2.2 * first);
                 let aside = breadth * (2.0 * second - 1.0) * (1.0 - 0.75 * first * first);
+                across = (first, 2.0 * second - 1.0);
                 (Vec3::new(side * middle.x, middle.y + aside, 0.16), Vec3::NEG_Z)
             }
             _ => {
@@ -92,7 +96,10 @@ fn root(settings: &StyleSettings, skin: &Skin, index: usize) -> (Root, f32) {
         };
         let Some(position) = skin.first_along(start, way) else { continue };
         let (position, normal) = skin.mannequin().nearest_skin(position);
-        let thick = if settings.style == Style::Brows { 1.0 } else { bearded(position, normal) };
+        let thick = match settings.style {
+            Style::Brows => browed(across),
+            _ => bearded(position, normal),
+        };
         let uv = Vec2::new(0.5 + 2.0 * position.x, 0.5 + 2.0 * position.y).clamp(Vec2::ZERO, Vec2::ONE);
         found = (Root { position, normal, uv }, thick);
         if thick > chance {
@@ -100,6 +107,13 @@ fn root(settings: &StyleSettings, skin: &Skin, index: usize) -> (Root, f32) {
         }
     }
     found
+}
+
+/// Density of a brow at a share of its length from the inner end on and of half its breadth, 0 to 1. The inner end is round
+/// and thin, and so are both edges.
+fn browed((along, aside): (f32, f32)) -> f32 {
+    let [begins, edge] = [BROW_BEGINS * (0.35 + aside * aside), aside.abs()];
+    smooth(0.0, begins, along) * smooth(1.1, 0.6, edge)
 }
 
 /// Density of a beard at a place of the face \[m\], 0 to 1.

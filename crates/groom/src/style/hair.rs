@@ -26,13 +26,17 @@ const CROSSING: (f32, f32) = (0.05, 0.010);
 const WANDER: f32 = 0.0022;
 /// Distance \[m\] from the whorl within which strands lie across it, and how far aside they follow other guides \[m\].
 const ACROSS_WHORL: (f32, f32) = (0.020, 0.012);
-/// Height of a strand above the skin beside its root over that of the guides, and the way \[m\] along which it
-/// reaches theirs.
-const FLAT: (f32, f32) = (0.65, 0.03);
+/// Height of a strand above the skin beside its root over that of the guides, that of hair which stands off the skin, and
+/// the way \[m\] along which it reaches theirs.
+const FLAT: f32 = 0.25;
+const STANDING: f32 = 0.65;
+const FLAT_WAY: f32 = 0.03;
 /// More roots than strands: those that a thin hairline leaves out.
 const SPARE: f32 = 1.12;
 /// Share of the roots on the hairline itself that grow.
 const THINNEST: f32 = 0.4;
+/// Breadth of the hairline of tied hair over that of other hair: drawn tight it shows more of itself.
+const TIED_HAIRLINE: f32 = 0.7;
 
 /// A strand between guides before it is shaped.
 pub(super) struct Between {
@@ -59,7 +63,12 @@ pub(super) fn between(
         .into_par_iter()
         .enumerate()
         .map(|(index, (root, density))| {
-            let root = nearer(settings, mannequin, root);
+            let root = nearer(settings, mannequin, scalp, root);
+            let density = if settings.style.is_tied() {
+                density.min(dense(TIED_HAIRLINE * settings.hairline, scalp, &root))
+            } else {
+                density
+            };
             let (strand, guide) = beside(settings, guides, &near, root, index);
             Between { strand, guide, density }
         })
@@ -71,8 +80,7 @@ fn roots(settings: &StyleSettings, scalp: &Scalp, guides: &[Strand], count: usiz
     let others: Vec<Root> = guides.iter().map(|guide| guide.root).collect();
     let wanted = (count as f32 * SPARE).ceil() as usize;
     let found = scalp.roots_among(&others, wanted, settings.seed ^ 0x5eed);
-    let density = |root: &Root| smooth(0.0, settings.hairline.max(1e-6), scalp.depth(root.position));
-    let densities: Vec<f32> = found.par_iter().map(density).collect();
+    let densities: Vec<f32> = found.par_iter().map(|root| dense(settings.hairline, scalp, root)).collect();
     let mut random = Random::new(settings.seed, 4_000_000_000);
     let rated = found.into_iter().zip(densities).map(|(root, density)| {
         let grows = random.unit() < THINNEST + (1.0 - THINNEST) * density;
@@ -94,6 +102,11 @@ fn roots(settings: &StyleSettings, scalp: &Scalp, guides: &[Strand], count: usiz
         is_kept(*index - 1, of, take)
     });
     kept.map(|(root, density, _)| (root, density)).collect()
+}
+
+/// Density of hair about a root, 0 to 1, behind a hairline of a breadth \[m\].
+fn dense(hairline: f32, scalp: &Scalp, root: &Root) -> f32 {
+    smooth(0.0, hairline.max(1e-6), scalp.depth(root.position))
 }
 
 /// A strand that runs with the guides about its root, and the guide that it is most like.
@@ -141,7 +154,8 @@ fn beside(
         *place += aside * (1.0 - closes * smooth(0.0, 0.4, share));
     }
     points[0] = root.position;
-    lay_flat(&mut points, root.normal);
+    let flat = if matches!(settings.style, Style::Buzz | Style::Afro) { STANDING } else { FLAT };
+    lay_flat(&mut points, root.normal, flat);
     (Strand { root, side, points }, found[0].0)
 }
 
@@ -168,19 +182,19 @@ fn side(settings: &StyleSettings, root: &Root, random: &mut Random) -> f32 {
     if (across < 0.0) == crosses { 1.0 } else { -1.0 }
 }
 
-/// Draws the beginning of a strand toward the plane of the skin at its root.
-fn lay_flat(points: &mut [Vec3], normal: Vec3) {
+/// Draws the beginning of a strand toward the plane of the skin at its root, to a share of its height there.
+fn lay_flat(points: &mut [Vec3], normal: Vec3, flat: f32) {
     let root = points[0];
     let mut along = 0.0;
     let mut before = root;
     for point in &mut points[1..] {
         along += point.distance(before);
         before = *point;
-        if along > FLAT.1 {
+        if along > FLAT_WAY {
             break;
         }
         let height = (*point - root).dot(normal);
-        let share = FLAT.0 + (1.0 - FLAT.0) * smooth(0.0, FLAT.1, along);
+        let share = flat + (1.0 - flat) * smooth(0.0, FLAT_WAY, along);
         *point -= normal * (height.max(0.0) * (1.0 - share));
     }
 }

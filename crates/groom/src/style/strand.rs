@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 use strandline_base::math;
-use strandline_body::{Mannequin, Root};
+use strandline_body::{Mannequin, Root, Scalp};
 
-use super::comb::WHORL;
+use super::comb::{WHORL, in_fringe};
 use super::{Style, StyleSettings};
 
 /// Distance \[m\] from the skin that all hair keeps once it has left the root.
@@ -14,10 +14,16 @@ pub const CLEARANCE: f32 = 0.0015;
 pub const WIDTH: f32 = 8e-5;
 /// Distance \[m\] from the parting within which roots of guides are drawn toward it, and those of the hair between them:
 /// skin shows where few hairs come from between it and the parting.
-const PARTING_REACH: [f32; 2] = [0.014, 0.040];
+const PARTING_REACH: [f32; 2] = [0.014, 0.048];
 /// Distance \[m\] from the whorl within which roots of hair between guides are drawn toward it, and the power of their
 /// share of it.
-const WHORL_REACH: (f32, f32) = (0.050, 1.7);
+const WHORL_REACH: (f32, f32) = (0.060, 1.9);
+
+/// Depth \[m\] on the scalp up to which roots of hair between guides are drawn toward the hairline where all hair is tied
+/// behind the head, the share of their depth that is left on the hairline itself, and the distance \[m\] along which the
+/// depth is measured.
+const HAIRLINE_REACH: (f32, f32) = (0.080, 0.2);
+const PROBE: f32 = 0.001;
 
 /// A strand with the inputs of its shaping.
 pub struct Strand {
@@ -34,9 +40,14 @@ pub fn beside_parting(settings: &StyleSettings, mannequin: &Mannequin, root: Roo
     toward_parting(settings, mannequin, root, PARTING_REACH[0], f32::sqrt)
 }
 
-/// Draws the root of hair between guides toward the parting or the whorl that it runs from: at a distance from there
-/// only the hair that is rooted nearer lies over the skin.
-pub fn nearer(settings: &StyleSettings, mannequin: &Mannequin, root: Root) -> Root {
+/// Draws the root of hair between guides toward the parting, the whorl or the hairline that it runs from: at a distance
+/// from there only the hair that is rooted nearer lies over the skin.
+pub fn nearer(settings: &StyleSettings, mannequin: &Mannequin, scalp: &Scalp, root: Root) -> Root {
+    if settings.style.is_tied() {
+        // None comes into the fringe.
+        let moved = toward_hairline(mannequin, scalp, root);
+        return if in_fringe(settings, &root) || in_fringe(settings, &moved) { root } else { moved };
+    }
     if settings.style == Style::Pixie {
         let (reach, power) = WHORL_REACH;
         let way = root.position - WHORL;
@@ -63,6 +74,19 @@ fn toward_parting(
         return root;
     }
     moved(mannequin, root, root.position.with_x(settings.parting + across * drawn(share)))
+}
+
+fn toward_hairline(mannequin: &Mannequin, scalp: &Scalp, root: Root) -> Root {
+    let (reach, least) = HAIRLINE_REACH;
+    let depth = scalp.depth(root.position);
+    let share = depth / reach;
+    if !(0.0..1.0).contains(&share) {
+        return root;
+    }
+    let [first, second]: [Vec3; 2] = root.normal.any_orthonormal_pair().into();
+    let slope = [first, second].map(|way| scalp.depth(root.position + way * PROBE) - depth);
+    let inward = (first * slope[0] + second * slope[1]).normalize_or_zero();
+    moved(mannequin, root, root.position - inward * (depth * (1.0 - least) * (1.0 - share)))
 }
 
 /// A root at the skin's place nearest to another \[m\].

@@ -5,4 +5,5 @@ mod bound;
 mod formats;
 mod several;
 mod strangers;
+mod style_roots;
 mod styles;

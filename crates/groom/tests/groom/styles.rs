@@ -315,6 +315,24 @@ fn guides_of_a_lock_of_curls_lie_together_by_the_middle_of_their_length() {
 }
 
 #[test]
+fn hair_that_is_led_behind_the_ears_stays_behind_the_shoulders() {
+    for style in [Style::Long, Style::Wavy] {
+        let plain = StyleSettings { strand_count: 200, ..StyleSettings::new(style) };
+        let led = StyleSettings { behind_ears: true, ..plain.clone() };
+        let [before, after] = [plain, led].map(|settings| {
+            let is_before = |tip: &&glam::Vec3| tip.y < -0.15 && tip.z > 0.02;
+            let groom = settings.grow_hair(1600).unwrap();
+            // Strands in thick layers went on outward where they passed the place behind the ear.
+            let is_astray = |point: &&glam::Vec3| point.x.abs() > 0.15 && point.y > -0.08;
+            assert_eq!(groom.points.iter().filter(is_astray).count(), 0, "{style:?}");
+            tips(&groom).iter().filter(is_before).count()
+        });
+        println!("{style:?}: {before} tips before the shoulders, {after} when led behind the ears");
+        assert!(before > 160 && after * 12 < before, "{style:?}: {before}, {after}");
+    }
+}
+
+#[test]
 fn the_same_seed_gives_the_same_bits_for_any_number_of_threads() {
     let with = |threads: usize, seed: u64| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
