@@ -26,25 +26,46 @@ fn settings() -> Settings {
     settings
 }
 
+/// Depth \[m\] of a strand that is a thousandth longer than its span.
+fn sag() -> f32 {
+    SPAN * (0.375e-3_f32).sqrt()
+}
+
+/// Shares of a strand, from its middle.
+fn shares() -> impl Iterator<Item = f32> {
+    (0..=400).map(|index| index as f32 / 400.0 - 0.5)
+}
+
+/// Such a strand along x, from a place \[m\] on.
+fn hangs(place: Vec3) -> Vec<Vec3> {
+    shares().map(|x| place + Vec3::new(SPAN * x, -sag() * (1.0 - 4.0 * x * x), 0.0)).collect()
+}
+
 /// Nine strands along z, a tenth longer than their span in waves aside, over nine along x that are a thousandth longer;
-/// `above` \[m\] apart. All are held at both ends.
-fn bundles(above: f32, settings: &Settings) -> Model {
+/// `above` \[m\] apart.
+fn nine_over_nine(above: f32) -> Vec<Vec<Vec3>> {
     let pitch = 2.04 * RADIUS;
-    let sag = SPAN * (0.375e-3_f32).sqrt();
     let aside = |index: usize| pitch * ((index % SIDE) as f32 - 0.5 * (SIDE - 1) as f32);
-    let shares = || (0..=400).map(|index| index as f32 / 400.0 - 0.5);
-    let mut groom = Groom::empty(8e-5);
-    for index in 0..SIDE * SIDE {
-        let low = pitch * (index / SIDE) as f32;
-        let hangs = |x: f32| Vec3::new(SPAN * x, -low - sag * (1.0 - 4.0 * x * x), aside(index));
-        groom.push(shares().map(hangs));
-    }
+    let lower =
+        (0..SIDE * SIDE).map(|index| hangs(Vec3::new(0.0, -(pitch * (index / SIDE) as f32), aside(index))));
     let waves = 3.0 * std::f32::consts::TAU / SPAN;
     let high = 2.0 * 0.1_f32.sqrt() / waves;
-    for index in 0..SIDE * SIDE {
-        let place = Vec3::new(aside(index), pitch * (1 + index / SIDE) as f32 - sag + above, 0.0);
+    let upper = (0..SIDE * SIDE).map(|index| {
+        let place = Vec3::new(aside(index), pitch * (1 + index / SIDE) as f32 - sag() + above, 0.0);
         let wave = |x: f32| Vec3::new(high * (waves * SPAN * (x + 0.5)).sin(), 0.0, SPAN * x);
-        groom.push(shares().map(|x| place + wave(x)));
+        shares().map(|x| place + wave(x)).collect()
+    });
+    lower.chain(upper).collect()
+}
+
+fn bundles(above: f32, settings: &Settings) -> Model {
+    held_at_both_ends(&nine_over_nine(above), settings)
+}
+
+fn held_at_both_ends(strands: &[Vec<Vec3>], settings: &Settings) -> Model {
+    let mut groom = Groom::empty(8e-5);
+    for strand in strands {
+        groom.push(strand.iter().copied());
     }
     let guides = Guides::resample(&groom, POINTS).unwrap();
     let rest = RestShape::new(&guides, settings.line_density());
@@ -111,6 +132,28 @@ fn contacts_do_not_depend_on_when_near_segments_were_looked_for() {
         still += usize::from(report.speed_mean < 0.01);
     }
     assert!(pairs > 20 && still > 10, "{pairs} pairs, {still} still steps");
+}
+
+#[test]
+fn a_strand_alone_does_not_know_those_beside_it_in_memory() {
+    // Eight strands far from others, in a block of eight of their own, then each before two of the others.
+    let run = |places: [usize; LANES]| {
+        let mut strands = nine_over_nine(0.0);
+        for (index, place) in places.into_iter().enumerate() {
+            strands.insert(place, hangs(Vec3::new(0.0, 0.0, 1.0 + 0.05 * index as f32)));
+        }
+        let model = held_at_both_ends(&strands, &settings());
+        let mut state = model.rest_state(Pose::IDENTITY);
+        let mut runner = CpuRunner::from(model);
+        let pairs = (0..30).map(|_| runner.step(&mut state, &Drive::default()).contacts.unwrap().pairs).max();
+        assert!(pairs > Some(20), "{pairs:?}");
+        let points =
+            |strand: usize| (0..POINTS).map(move |point| (strand / LANES * POINTS + point, strand % LANES));
+        places
+            .map(|strand| points(strand).map(|(at, lane)| state.positions[at].get(lane)).collect::<Vec<_>>())
+    };
+    let alone = run([0, 1, 2, 3, 4, 5, 6, 7]);
+    assert_eq!(alone, run([0, 3, 6, 9, 12, 15, 18, 21]));
 }
 
 /// Way \[m\] in half a second of a loose strand on two rails that do not move, under gravity with a slope along them.

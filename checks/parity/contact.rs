@@ -13,6 +13,9 @@ const POINTS: usize = 12;
 const RADIUS: f32 = 1.5e-3;
 /// Largest difference of positions \[m\]: rounding of places of decimetres. 6e-9 were found.
 const PLACE: f32 = 1e-7;
+/// The same of strands without pairs, whose Newton's method may end a step earlier: what it leaves is the square of its
+/// tolerance (0.01 rad) over the length of a strand. 5.3e-6 were found in the fall.
+const ALONE: f32 = 1.6e-5;
 
 /// Five strands across six, a millimetre above them; all are held at both ends, and a tenth longer than their span.
 fn crossing(change: impl Fn(&mut Settings)) -> Model {
@@ -84,20 +87,19 @@ fn apart([one, other]: [&State; 2]) -> [f32; 2] {
 #[test]
 fn solve_rods_finds_the_same_pairs_and_pushes_them_alike() {
     let model = crossing(|_| ());
-    // At rest, in the fall, when the first press, and when all have calmed down.
+    // At rest, in the fall, when the first press, and when nearly all have calmed down.
     for before in [0, 5, 9, 40] {
         let Some([(expected, report), (state, found)]) = both(before, &model, model.clone()) else { return };
         let (wanted, pairs) = (pairs(&expected), pairs(&state));
         assert_eq!(segments(&pairs), segments(&wanted), "{before}");
         let [touched, alone] = apart([&expected, &state]);
         assert!(touched < PLACE, "{before}: {touched} m");
-        // A strand without pairs is solved as without contact; on the CPU it keeps its tension where one of its block of
-        // eight has any, and a taut strand sags by half a millimetre without. 0.5 mm were found.
-        assert!(alone < 1e-3, "{before}: {alone} m");
+        // A strand without pairs is solved as without contact, whatever others of its block of eight do.
+        assert!(alone < ALONE, "{before}: {alone} m");
         let (report, found) = (report.contacts.unwrap(), found.contacts.unwrap());
         assert_eq!([found.pairs, found.crossed], [report.pairs, report.crossed], "{before}");
         assert!((found.deepest - report.deepest).abs() < PLACE, "{before}: {found:?}, {report:?}");
-        assert_eq!(report.pairs > 0, [5, 9].contains(&before), "{before}: {report:?}");
+        assert_eq!(report.pairs > 0, before > 0, "{before}: {report:?}");
         for (one, other) in wanted.chunks(12).zip(pairs.chunks(12)) {
             let differs = one[4..7].iter().zip(&other[4..7]).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
             // Rounding of places over a radius.

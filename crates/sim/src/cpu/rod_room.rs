@@ -82,7 +82,8 @@ impl Room {
         }
     }
 
-    /// Begins Newton's method, and finds how stiffly rounds hold the points.
+    /// Begins Newton's method, and finds how stiffly rounds hold the points. Strands without pairs forget their tension,
+    /// as strands alone have none: they do not know those beside them in the block.
     pub(super) fn hold(&mut self, near: &[Near], hair: &Hair, block: usize, ways: &mut [Vec3Lanes]) {
         (self.open, self.pressed, self.whole) = (f32x8::of(1.0), f32x8::ZERO, f32x8::ZERO);
         let mut meets = [0.0; LANES];
@@ -103,6 +104,7 @@ impl Room {
             self.give_ways(ways);
         }
         self.meets = f32x8::from(meets);
+        self.space.forget_tensions(self.meets);
     }
 
     /// Point and lane of a pair's segment in this block.
@@ -171,7 +173,8 @@ impl Room {
             *push = Push { force: self.pushed[point], own, next };
         }
         let first = newton == 0;
-        let turned = self.space.push(strands.nodes, &self.pushes, &self.settings, first, self.open);
+        let open = [self.open, self.meets];
+        let turned = self.space.push(strands.nodes, &self.pushes, &self.settings, first, open);
         for (point, step) in self.steps.iter_mut().enumerate() {
             let [x, y, z, _] = self.space.work.step[point];
             *step = Vector::new(x, y, z);

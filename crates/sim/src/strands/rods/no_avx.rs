@@ -55,7 +55,7 @@ impl Avx {
         _pushes: &[Push<f32x8>],
         _settings: &StepSettings<f32x8>,
         _first: bool,
-        _open: f32x8,
+        _open: [f32x8; 2],
     ) -> Turned<f32x8> {
         match *self {}
     }

@@ -38,7 +38,7 @@ pub struct Turned<R> {
 const CALM: f64 = 0.1;
 
 impl<R: Real> Work<R> {
-    /// A Newton step of the strands with `open` above 0, under the pushes.
+    /// A Newton step of the strands with `open` above 0, under the pushes. Those with `meets` above 0 keep tensions.
     #[inline(always)]
     pub fn push(
         &mut self,
@@ -46,7 +46,7 @@ impl<R: Real> Work<R> {
         (pulls, pushes): (&[Pull<R>], &[Push<R>]),
         settings: &StepSettings<R>,
         first: bool,
-        open: R,
+        (open, meets): (R, R),
     ) -> Turned<R> {
         let stiffer = R::of(1.0) + settings.viscous;
         let step = settings.time_step;
@@ -55,7 +55,7 @@ impl<R: Real> Work<R> {
             (_, sound) = self.factorise(rod, (pulls, pushes), stiffer, step, first, sound);
         }
         substitute(&self.factors, &mut self.step);
-        self.begin_tensions(rod, sound.choose(open, R::of(0.0)));
+        self.begin_tensions(rod, sound.choose(meets.choose(open, R::of(0.0)), R::of(0.0)));
         let (turn, whole) = self.take_whole_step(open, sound);
         Turned { pressed, turn, whole }
     }

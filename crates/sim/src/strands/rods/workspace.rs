@@ -118,6 +118,17 @@ impl Workspace {
         }
     }
 
+    /// Forgets those of the strands whose `meets` is not above 0.
+    pub fn forget_tensions(&mut self, meets: f32x8) {
+        let none = f32x8::of(-0.0);
+        for point in 0..self.points.len() {
+            match &mut self.avx {
+                Some(avx) => avx.set_tension(point, meets.choose(avx.tension(point), none)),
+                None => self.work.tensions[point] = meets.choose(self.work.tensions[point], none),
+            }
+        }
+    }
+
     /// Writes them.
     pub fn store_tensions(&self, tensions: &mut [Lanes]) {
         for (point, lanes) in tensions.iter_mut().enumerate() {
@@ -142,11 +153,11 @@ impl Workspace {
         pushes: &[Push<f32x8>],
         settings: &StepSettings<f32x8>,
         first: bool,
-        open: f32x8,
+        [open, meets]: [f32x8; 2],
     ) -> Turned<f32x8> {
         match &mut self.avx {
-            Some(avx) => avx.push(&mut self.work, pushes, settings, first, open),
-            None => self.work.push(rod, (&self.pulls, pushes), settings, first, open),
+            Some(avx) => avx.push(&mut self.work, pushes, settings, first, [open, meets]),
+            None => self.work.push(rod, (&self.pulls, pushes), settings, first, (open, meets)),
         }
     }
 

@@ -52,7 +52,7 @@ impl Avx {
         pushes: &[Push<f32x8>],
         settings: &StepSettings<f32x8>,
         first: bool,
-        open: f32x8,
+        open: [f32x8; 2],
     ) -> Turned<f32x8> {
         // SAFETY: as above.
         unsafe { self.push_there(work, pushes, settings, first, open) }
@@ -65,7 +65,7 @@ impl Avx {
         pushes: &[Push<f32x8>],
         settings: &StepSettings<f32x8>,
         first: bool,
-        open: f32x8,
+        open: [f32x8; 2],
     ) -> Turned<f32x8> {
         self.pushes.clear();
         self.pushes.extend(pushes.iter().map(|push| Push {
@@ -76,7 +76,8 @@ impl Avx {
         let StepSettings { time_step, newton_steps, tolerance, viscous } = *settings;
         let settings = StepSettings { time_step, newton_steps, tolerance, viscous: Eight::from(viscous) };
         let (pulls, pushes) = (&self.pulls[..], &self.pushes[..]);
-        let turned = self.work.push(&self.rod, (pulls, pushes), &settings, first, Eight::from(open));
+        let [open, meets] = open.map(Eight::from);
+        let turned = self.work.push(&self.rod, (pulls, pushes), &settings, first, (open, meets));
         self.give_moved(work);
         Turned { pressed: turned.pressed.wide(), turn: turned.turn.wide(), whole: turned.whole.wide() }
     }
