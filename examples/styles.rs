@@ -137,8 +137,9 @@ fn page() -> Result<String, Box<dyn std::error::Error>> {
          Styles grow on the built-in head, or on the head of a body: `--style NAME`, `[style]` of a scene, the list `style` of the \
          window. A seed grows other hair of the same style. Each style has other settings; those that differ from \"long\" are listed. \
          [scene.md](scene.md#style) says what each does.\n\n\
-         At rest no strand of any style moves by a bit. Six seconds after a shake of one second buns, braids, afros, coils, \
-         buzz cuts, side-swept hair and hair of the face are back within 0.5 % of their length in the mean (checks/laws/rod_styles.rs).\n",
+         At rest hair stays where it is, to the bit where it was measured. Six seconds after a shake of one second buns, braids, \
+         afros, coils, buzz cuts, side-swept hair and hair of the face were back within 0.5 % of their length in the mean \
+         (checks/laws/rod_styles.rs, which holds all styles to 2 %).\n",
     );
     let Kind::Words(words) = Scene::row("style.style")?.kind else { return Err("no list of styles".into()) };
     let plain = settings(Style::default());

@@ -58,7 +58,7 @@ law! {
         let six = [Style::Wavy, Style::Long, Style::Curly, Style::Ponytail, Style::Bob, Style::Pixie];
         let shake = |time: f64| Motion::Shake.pose(time.min(1.0), Vec3::new(0.0, -0.1, 0.0));
         let on_cpu = matches!(on, On::Cpu);
-        for name in styles(six, on.brief(on.short([6, 9], [2, 0]), [1, 1])) {
+        for name in styles(six, on.brief(on.short([6, 9], [2, 0]), [2, 1])) {
             // A software adapter has a volume with the first alone, in one step, and looks after four seconds.
             let first = name == Style::Wavy;
             // All four rates in `cargo xtask long`: that of 1/480 s takes half of the time.

@@ -156,9 +156,8 @@ fn drawn_strands_are_no_copies_of_others() {
     for style in styles {
         let found = likeness(&drawn(&scene(style)), n);
         println!("{}: {:.1} % of the strands run beside another one", style.name(), 100.0 * found);
-        // 5 % is asked for. Of a ponytail 5.4 % were seen; a bun had 2.5 with guides half as uneven again, and 5.4 with guides
-        // a third more even.
-        let most = if matches!(style, Style::Ponytail | Style::Bun) { 0.06 } else { 0.05 };
+        // 5 % is asked for. Of a ponytail 5.4 % were seen, a known fault of docs/gallery.md.
+        let most = if style == Style::Ponytail { 0.06 } else { 0.05 };
         alike.extend((found > most).then_some((style, found)));
     }
     assert!(alike.is_empty(), "{alike:?}");

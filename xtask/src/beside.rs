@@ -20,11 +20,16 @@ const KNOWN: &str = "built.txt";
 pub fn begin() -> bool {
     let folder = root().join(FOLDER);
     let known = std::fs::read_to_string(folder.join(KNOWN)).unwrap_or_default();
-    if libraries().iter().any(|name| !known.lines().any(|known| known == name)) {
+    let mut known = known.lines();
+    let settings = known.next() == Some(&lints());
+    let known: Vec<&str> = known.collect();
+    if libraries().iter().any(|name| !settings || !known.contains(&name.as_str())) {
         return false;
     }
     // Cargo builds this program anew while it runs.
     let copy = folder.join("xtask");
+    // What another version of the tools wrote is not read by this one.
+    let _ = std::fs::remove_dir_all(folder.join("out"));
     let made = std::fs::create_dir_all(folder.join("out"))
         .and_then(|()| std::fs::copy(std::env::current_exe()?, &copy));
     if let Err(error) = &made {
@@ -35,10 +40,16 @@ pub fn begin() -> bool {
 
 /// Notes what was built, so that the next run tells it from a plain build.
 pub fn end() {
-    let written = wrapper().map(|copy| std::fs::write(copy.with_file_name(KNOWN), libraries().join("\n")));
+    let built = [vec![lints()], libraries()].concat().join("\n");
+    let written = wrapper().map(|copy| std::fs::write(copy.with_file_name(KNOWN), built));
     if let Some(Err(error)) = written {
         println!("the next run will build anew: {error}");
     }
+}
+
+/// The settings of the lints on one line: cargo does not know that a build depends on them.
+fn lints() -> String {
+    std::fs::read_to_string(root().join("clippy.toml")).unwrap_or_default().replace('\n', " ")
 }
 
 /// Names of the builds of the library that are there.
@@ -57,15 +68,14 @@ pub fn step() -> &'static str {
 /// True where cargo calls this program in place of rustc.
 pub fn is_called() -> bool {
     std::env::var_os(CALLED).is_some()
-        && std::env::args().nth(1).is_some_and(|word| Path::new(&word).ends_with("rustc"))
+        && std::env::args().nth(1).is_some_and(|word| Path::new(&word).file_stem() == Some("rustc".as_ref()))
 }
 
-/// Compiles a crate as rustc would, then lints it, then documents it unless it is a test.
+/// Compiles a crate as rustc would, then lints it, then documents a library or a program.
 pub fn compile() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(2).collect();
     let out = root().join(FOLDER).join("out");
     let rustc = std::env::args().nth(1).unwrap_or_default();
-    // Clippy's own words: its tools set them where cargo asks for lints, and rustc knows none.
     let mut commands = vec![(rustc, words.clone())];
     if is_crate(&words) {
         let with = |mut words: Vec<String>, more: &[&str]| {
@@ -74,7 +84,7 @@ pub fn compile() -> ExitCode {
         };
         let metadata = with(elsewhere(&words, &out), &["--emit=metadata", "-D", "warnings"]);
         commands.push(("clippy-driver".to_owned(), metadata));
-        if !words.iter().any(|word| word == "--test") && !is_script(&words) {
+        if is_documented(&words) {
             let private = if is_program(&words) { &["--document-private-items"][..] } else { &[] };
             let documented = with(with(elsewhere(&words, &out), &["-D", "warnings"]), private);
             commands.push(("rustdoc".to_owned(), documented));
@@ -98,9 +108,14 @@ fn is_crate(words: &[String]) -> bool {
     words.iter().any(|word| word.starts_with("--emit=")) && words.iter().any(|word| word.ends_with(".rs"))
 }
 
-/// True for the script of a build.
-fn is_script(words: &[String]) -> bool {
-    words.windows(2).any(|pair| pair[0] == "--crate-name" && pair[1].starts_with("build_script_"))
+/// True for libraries and programs, and not for tests, examples and scripts of builds.
+fn is_documented(words: &[String]) -> bool {
+    let is_other = |pair: &[String]| match pair[0].as_str() {
+        "--crate-name" => pair[1].starts_with("build_script_"),
+        "--out-dir" => Path::new(&pair[1]).ends_with("examples"),
+        _ => false,
+    };
+    !words.iter().any(|word| word == "--test") && !words.windows(2).any(is_other)
 }
 
 /// True for a program and an example.
@@ -108,7 +123,8 @@ fn is_program(words: &[String]) -> bool {
     words.windows(2).any(|pair| pair[0] == "--crate-type" && pair[1] == "bin")
 }
 
-/// The same crate into another folder: neither what cargo waits for is told nor what it keeps is touched.
+/// The same crate into another folder: files that cargo keeps are not touched, and no file is announced for which it
+/// waits.
 fn elsewhere(words: &[String], out: &Path) -> Vec<String> {
     let mut words = words.iter();
     let mut other = Vec::new();
@@ -152,7 +168,7 @@ mod tests {
              -C opt-level=2 --cfg feature=\"gpu\" --extern a=/t/liba.rmeta --out-dir /o",
         );
         assert_eq!(elsewhere(&cargo, Path::new("/o")), other);
-        assert!(is_crate(&cargo) && !is_program(&cargo) && !is_script(&cargo));
+        assert!(is_crate(&cargo) && !is_program(&cargo) && is_documented(&cargo));
     }
 
     #[test]
@@ -160,6 +176,12 @@ mod tests {
         assert!(!is_crate(&words("-vV")));
         assert!(!is_crate(&words("- --crate-name ___ --print=file-names --crate-type bin")));
         assert!(is_program(&words("--crate-name xtask src/main.rs --crate-type bin --emit=link")));
-        assert!(is_script(&words("--crate-name build_script_build build.rs --crate-type bin --emit=link")));
+        for other in [
+            "--crate-name build_script_build b.rs",
+            "--crate-name a a.rs --test",
+            "--crate-name a a.rs --out-dir /t/examples",
+        ] {
+            assert!(!is_documented(&words(other)), "{other}");
+        }
     }
 }

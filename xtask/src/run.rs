@@ -4,7 +4,7 @@ use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
 use std::process::Stdio;
 
-use crate::cargo::{cargo_command, root};
+use crate::cargo::{cargo_command, root, wrapper};
 use crate::programs::{self, Ran, Tally};
 use crate::python::Coming;
 use crate::times::{Clock, Times};
@@ -109,7 +109,12 @@ fn look(report: &mut Report, beside: bool) {
 /// Builds, then runs the test programs, the tests in Python and the examples side by side, and the doc tests.
 fn tests(report: &mut Report, wanted: &[(&str, &str)], python: Option<&str>) {
     let mut messages = String::new();
-    if !report.step(beside::step(), |_| build(&mut messages)) {
+    // Programs and libraries without tests are linted with the rest.
+    let rest = ["build", "--workspace", "--quiet", "--lib", "--bins", "--tests"];
+    let is_built = |messages: &mut String| {
+        build(messages) && (wrapper().is_none() || cargo(&rest, &[], &mut Tally::default()))
+    };
+    if !report.step(beside::step(), |_| is_built(&mut messages)) {
         return;
     }
     report.step("second build", |_| nothing_is_built_again());

@@ -2,10 +2,10 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The last `N` values that were made, by their keys: for what is a function of its key alone and takes long to make.
+/// The last `N` values that were asked for, by their keys: for what is a function of its key alone and takes long to make.
 ///
-/// Two threads that ask for the same new value at a time both make it: nobody waits for a thread that may itself wait
-/// for the pool.
+/// Two threads that ask for the same new value at a time both make it. If one waited for the other, which itself may wait
+/// for the pool, both could wait for ever.
 pub struct Recent<K, V, const N: usize>(Mutex<Vec<(K, Arc<V>)>>);
 
 impl<K: PartialEq, V, const N: usize> Recent<K, V, N> {
@@ -15,27 +15,32 @@ impl<K: PartialEq, V, const N: usize> Recent<K, V, N> {
         Self(Mutex::new(Vec::new()))
     }
 
-    /// The value of a key, made by `make` unless it is one of the last.
+    /// The value of a key, made by `make` unless it is one of the last that were asked for.
     ///
     /// # Errors
     /// That of `make`; then nothing is kept.
     pub fn get<E>(&self, key: K, make: impl FnOnce() -> Result<V, E>) -> Result<Arc<V>, E> {
-        let known = |list: &[(K, Arc<V>)]| {
-            list.iter().find(|(other, _)| *other == key).map(|(_, value)| value.clone())
-        };
-        if let Some(value) = known(&self.list()) {
+        if let Some(value) = self.known(&key) {
             return Ok(value);
         }
-        let value = Arc::new(make()?);
+        let made = Arc::new(make()?);
+        if let Some(value) = self.known(&key) {
+            return Ok(value);
+        }
         let mut list = self.list();
-        if let Some(value) = known(&list) {
-            return Ok(value);
-        }
-        list.push((key, value.clone()));
+        list.push((key, made.clone()));
         if list.len() > N {
             list.remove(0);
         }
-        Ok(value)
+        Ok(made)
+    }
+
+    /// The value of a key if it is one of the last, which then is the last.
+    fn known(&self, key: &K) -> Option<Arc<V>> {
+        let mut list = self.list();
+        let place = list.iter().position(|(other, _)| other == key)?;
+        list[place..].rotate_left(1);
+        list.last().map(|(_, value)| value.clone())
     }
 
     fn list(&self) -> std::sync::MutexGuard<'_, Vec<(K, Arc<V>)>> {
@@ -58,8 +63,8 @@ mod tests {
             });
             value.map(|value| *value)
         };
-        let values: Vec<_> = [1, 2, 1, 9, 2, 3, 1, 3, 9].into_iter().map(&mut get).collect();
-        assert_eq!(values, [Ok(10), Ok(20), Ok(10), Err(9), Ok(20), Ok(30), Ok(10), Ok(30), Err(9)]);
-        assert_eq!(made, [1, 2, 9, 3, 1, 9]);
+        let values: Vec<_> = [1, 2, 1, 9, 3, 1, 2, 1, 9].into_iter().map(&mut get).collect();
+        assert_eq!(values, [Ok(10), Ok(20), Ok(10), Err(9), Ok(30), Ok(10), Ok(20), Ok(10), Err(9)]);
+        assert_eq!(made, [1, 2, 9, 3, 2, 9], "of 1 and 2 the latter is the older when 3 comes");
     }
 }

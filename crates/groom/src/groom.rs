@@ -57,8 +57,8 @@ pub struct Groom {
     pub masses: Option<Vec<f32>>,
     /// Velocities at the beginning \[m/s\], head space, shape `[point]`; without them hair begins at rest.
     pub velocities: Option<Vec<Vec3>>,
-    /// The number of each strand in its file, from 0, where others of the file were left out or strands are of several
-    /// files: shape `[strand]`.
+    /// The number of each strand in its file, or through all of `files`, from 0, where others were left out or strands are
+    /// of several files: shape `[strand]`.
     pub numbers: Option<Vec<u32>>,
     /// Files that were read as one groom, by the number of their first strand; numbers of strands then count through
     /// all of them.

@@ -79,7 +79,11 @@ impl Groom {
         groom.transparencies = self.transparencies.as_ref().map(|all| self.per_point(strands, all));
         groom.masses = self.masses.as_ref().map(|all| self.per_point(strands, all));
         groom.velocities = self.velocities.as_ref().map(|all| self.per_point(strands, all));
-        let numbers = self.numbers.as_ref().map(|all| per_strand(strands, all));
+        let numbers = match &self.numbers {
+            Some(all) => Some(per_strand(strands, all)),
+            // Of several files each strand keeps the number among all of them.
+            None => (!self.files.is_empty()).then(|| strands.iter().map(|&strand| strand as u32).collect()),
+        };
         let is_counted =
             |all: &Vec<u32>| all.iter().enumerate().all(|(strand, number)| *number as usize == strand);
         groom.numbers = numbers.filter(|all| !is_counted(all));

@@ -36,7 +36,7 @@ impl Mannequin {
     ///
     /// Materials: `skin` has no colour of its own, `eyes` have. Coordinates are those of [`crate::Root::uv`], v down.
     ///
-    /// Made once: the process keeps the last two.
+    /// The process keeps the last two.
     pub fn figure(&self) -> Mesh {
         static FIGURES: Recent<(Build, Eyes), Mesh, 2> = Recent::new();
         let Ok(figure) = FIGURES.get(self.kind(), || Ok::<_, Infallible>(self.drawn()));

@@ -67,7 +67,7 @@ impl Mannequin {
     }
 
     /// The signed distance sampled at `spacing` \[m\], padded by `padding` \[m\], as [`DistanceGrid::from_field`]
-    /// makes it. Made once: the process keeps the last two.
+    /// makes it. The process keeps the last two.
     ///
     /// # Errors
     /// As [`DistanceGrid::from_field`].

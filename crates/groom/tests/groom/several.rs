@@ -17,6 +17,7 @@ fn strands_of_several_files_are_named_with_their_file() {
     let whole = load_all(&paths, &LoadOptions::default()).unwrap();
     assert_eq!(whole.report.problems, Vec::<String>::new());
     assert_eq!([39, 40, 119].map(|strand| whole.groom.number(strand)), [39, 0, 39]);
+    assert_eq!(whole.groom.select(&[100, 3]).number(0), 20, "a strand that is chosen keeps its number");
     // A strand without length and one far from all others.
     let mut two = lawn.clone();
     let empty = two.range(7);

@@ -51,7 +51,8 @@ mod tests {
             .rev()
             .map(|bit| 1 << bit)
             .fold(0, |most, step| if is_ok(most + step, &dark) { most + step } else { most });
-        assert!(most > 1000 && is_ok(most, &[]) && !is_ok(most, &light), "{most}");
+        // Not so where STRANDLINE_MEMORY allows more than any number of strands takes.
+        assert!(most + 1 == 1 << 24 || (most > 1000 && is_ok(most, &[]) && !is_ok(most, &light)), "{most}");
         assert!(is_ok(most / 2, &light), "{most}");
     }
 }

@@ -16,8 +16,8 @@ use crate::{DetailLevel, Look};
 
 /// Share of a strand along which its offset turns from the skin's plane into the strand's own.
 const ROOT_SHARE: f32 = 0.12;
-/// Share of the clump radius by which a follow strand keeps off its guide, times the lift: hair that is lifted past its
-/// guide would else lie in it.
+/// Share of the clump radius about a guide, times the lift, in which follow strands move outward by what is missing to that
+/// radius: half as many of those that are lifted lie in their guide then, and none jumps where it passes it.
 const KEPT_OFF: f32 = 0.3;
 /// Length over which a strand grows to its width \[m\].
 const ROOT_TAPER: f32 = 0.004;
@@ -299,11 +299,11 @@ fn disc_offset(seed: u32, index: usize) -> Vec2 {
 }
 
 /// Moves an offset out of the skin: where the guide lies along it (`outward` is a unit vector), the disc is
-/// squeezed toward the outer half of itself, but for a little room about the guide.
+/// squeezed toward the outer half of itself, and thinned about the guide.
 fn lifted(offset: Vec2, outward: Vec2, lift: f32) -> Vec2 {
     let depth = offset.dot(outward.normalize_or_zero());
     let moved = offset + outward * (0.5 * lift * (1.0 - depth));
-    moved * (KEPT_OFF * lift / moved.length().max(1e-6)).max(1.0)
+    moved + outward * (KEPT_OFF * lift - moved.length()).max(0.0)
 }
 
 /// Unit tangents of a polyline of even steps by central differences, one-sided at its ends.
