@@ -28,7 +28,7 @@ pub fn begin() -> bool {
     }
     // Cargo builds this program anew while it runs.
     let copy = folder.join("xtask");
-    // What another version of the tools wrote is not read by this one.
+    // Other versions of the tools wrote files that these do not read.
     let _ = std::fs::remove_dir_all(folder.join("out"));
     let made = std::fs::create_dir_all(folder.join("out"))
         .and_then(|()| std::fs::copy(std::env::current_exe()?, &copy));

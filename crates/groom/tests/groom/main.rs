@@ -1,5 +1,7 @@
 //! The groom crate's integration tests, one program for all.
 
+#![allow(clippy::disallowed_methods)] // tests may use inexact math
+
 mod attributes;
 mod bound;
 mod formats;
