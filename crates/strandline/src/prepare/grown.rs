@@ -8,8 +8,9 @@ use crate::{
     scene::{filling, segments_per_span},
 };
 
-/// Width of strands over that of hair as dense as on a head, or the inverse, below which they are as wide.
-const AS_WIDE: f32 = 1.6;
+/// Width of strands over that of hair as dense as on a head, or the inverse, below which they are as wide; brows, which
+/// thin out, have 1.6.
+const AS_WIDE: f32 = 1.8;
 
 /// Takes settings that the scene leaves open from a groom as a style grows it.
 pub(super) fn grown(loading: &mut Loading) {
