@@ -61,84 +61,87 @@ fn from_segment(point: Vec3, [start, end]: [Vec3; 2]) -> f32 {
     point.distance(start + way * share)
 }
 
-/// Segments of strands, by the cells that they pass.
-struct Segments<'a> {
-    strands: &'a [Vec<Vec3>],
-    cells: HashMap<IVec3, Vec<(u32, u32)>>,
+/// Places along every n-th strand, by their cells.
+#[derive(Default)]
+struct Places {
+    /// Strand, position \[m\], and distance along the strand \[m\], in order.
+    all: Vec<(usize, Vec3, f32)>,
+    cells: HashMap<IVec3, Vec<usize>>,
 }
 
-impl<'a> Segments<'a> {
-    fn new(strands: &'a [Vec<Vec3>]) -> Self {
-        let mut cells: HashMap<IVec3, Vec<(u32, u32)>> = HashMap::new();
+/// The cell of a position.
+fn cell(position: Vec3) -> IVec3 {
+    (position / CELL).floor().as_ivec3()
+}
+
+impl Places {
+    /// Places of every n-th of the strands that are long enough to be alike.
+    fn new(strands: &[Vec<Vec3>], n: usize) -> Self {
+        let mut places = Self::default();
+        for (strand, points) in strands.iter().enumerate().step_by(n) {
+            let length: f32 = points.windows(2).map(|ends| ends[0].distance(ends[1])).sum();
+            if length < ALIKE {
+                continue;
+            }
+            let mut passed = 0.0;
+            for ends in points.windows(2) {
+                let segment = ends[0].distance(ends[1]);
+                let steps = (segment / SPACING).ceil().max(1.0);
+                for step in 0..steps as usize {
+                    let share = step as f32 / steps;
+                    places.add(strand, ends[0].lerp(ends[1], share), passed + share * segment);
+                }
+                passed += segment;
+            }
+        }
+        places
+    }
+
+    fn add(&mut self, strand: usize, position: Vec3, along: f32) {
+        self.cells.entry(cell(position)).or_default().push(self.all.len());
+        self.all.push((strand, position, along));
+    }
+
+    /// Other strands beside each of the places, in order.
+    fn beside(&self, strands: &[Vec<Vec3>]) -> Vec<Vec<usize>> {
+        let mut beside = vec![Vec::new(); self.all.len()];
         for (strand, points) in strands.iter().enumerate() {
-            for (segment, ends) in points.windows(2).enumerate() {
-                let [low, high] = [ends[0].min(ends[1]) - BESIDE, ends[0].max(ends[1]) + BESIDE]
-                    .map(|at| (at / CELL).floor().as_ivec3());
-                for x in low.x..=high.x {
-                    for y in low.y..=high.y {
-                        for z in low.z..=high.z {
-                            let own = (strand as u32, segment as u32);
-                            cells.entry(IVec3::new(x, y, z)).or_default().push(own);
-                        }
+            for ends in points.windows(2) {
+                let low = cell(ends[0].min(ends[1]) - BESIDE);
+                let high = cell(ends[0].max(ends[1]) + BESIDE);
+                let cells = (low.x..=high.x)
+                    .flat_map(|x| (low.y..=high.y).map(move |y| (x, y)))
+                    .flat_map(|(x, y)| (low.z..=high.z).map(move |z| IVec3::new(x, y, z)));
+                for &place in cells.filter_map(|cell| self.cells.get(&cell)).flatten() {
+                    let (own, position, _) = self.all[place];
+                    let is_beside = own != strand && from_segment(position, [ends[0], ends[1]]) < BESIDE;
+                    if is_beside && beside[place].last() != Some(&strand) {
+                        beside[place].push(strand);
                     }
                 }
             }
         }
-        Self { strands, cells }
-    }
-
-    /// Other strands beside a place of a strand.
-    fn beside(&self, own: usize, place: Vec3) -> Vec<u32> {
-        let here = self.cells.get(&(place / CELL).floor().as_ivec3());
-        let mut found: Vec<u32> = here
-            .into_iter()
-            .flatten()
-            .filter(|(strand, segment)| {
-                let points = &self.strands[*strand as usize];
-                let ends = [points[*segment as usize], points[*segment as usize + 1]];
-                *strand as usize != own && from_segment(place, ends) < BESIDE
-            })
-            .map(|(strand, _)| *strand)
-            .collect();
-        found.sort_unstable();
-        found.dedup();
-        found
-    }
-
-    /// True if a strand runs beside another one for long; `None` where it is too short to.
-    fn is_alike(&self, own: usize) -> Option<bool> {
-        let points = &self.strands[own];
-        let length: f32 = points.windows(2).map(|ends| ends[0].distance(ends[1])).sum();
-        if length < ALIKE {
-            return None;
-        }
-        let mut beside: HashMap<u32, f32> = HashMap::new();
-        let mut passed = 0.0;
-        for ends in points.windows(2) {
-            let segment = ends[0].distance(ends[1]);
-            let steps = (segment / SPACING).ceil().max(1.0);
-            for step in 0..steps as usize {
-                let share = step as f32 / steps;
-                let along = passed + share * segment;
-                let now = self.beside(own, ends[0].lerp(ends[1], share));
-                beside =
-                    now.into_iter().map(|other| (other, *beside.get(&other).unwrap_or(&along))).collect();
-                if beside.values().any(|start| along - start >= ALIKE) {
-                    return Some(true);
-                }
-            }
-            passed += segment;
-        }
-        Some(false)
+        beside
     }
 }
 
-/// Share of every n-th strand that runs beside another one.
+/// Share of every n-th strand that runs beside another one for long.
 fn likeness(strands: &[Vec<Vec3>], n: usize) -> f32 {
-    let segments = Segments::new(strands);
-    let found: Vec<bool> =
-        (0..strands.len()).step_by(n).filter_map(|strand| segments.is_alike(strand)).collect();
-    found.iter().filter(|alike| **alike).count() as f32 / found.len().max(1) as f32
+    let places = Places::new(strands, n);
+    let beside = places.beside(strands);
+    let (mut looked_at, mut alike) = (0, 0);
+    let mut first = 0;
+    for own in places.all.chunk_by(|one, two| one.0 == two.0) {
+        let mut since: HashMap<usize, f32> = HashMap::new();
+        let is_alike = own.iter().zip(&beside[first..]).any(|((.., along), beside)| {
+            since = beside.iter().map(|other| (*other, *since.get(other).unwrap_or(along))).collect();
+            since.values().any(|start| along - start >= ALIKE)
+        });
+        first += own.len();
+        looked_at += 1;
+        alike += u32::from(is_alike);
+    }
+    alike as f32 / looked_at.max(1) as f32
 }
 
 /// A built-in style.
