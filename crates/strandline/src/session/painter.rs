@@ -38,7 +38,8 @@ pub(crate) struct Painter {
 }
 
 enum Place {
-    Cpu(Box<Renderer>),
+    /// `None` before the first picture: many sessions simulate alone.
+    Cpu(Option<Box<Renderer>>),
     Gpu(Box<GpuRenderer>),
 }
 
@@ -64,12 +65,8 @@ impl Painter {
             },
             None => None,
         };
-        let place = match placed {
-            Some(place) => place,
-            None => Place::Cpu(on_cpu(&strands, bound.as_ref(), mesh.as_deref(), &settings)?.into()),
-        };
         Ok(Self {
-            place,
+            place: placed.unwrap_or(Place::Cpu(None)),
             stand_in: None,
             stands_in: false,
             strands,
@@ -113,7 +110,11 @@ impl Painter {
     /// Changes size and finish of the pictures; nothing changes when that fails.
     pub fn set_picture(&mut self, settings: &PictureSettings) -> Result<(), RenderError> {
         let changed = match &mut self.place {
-            Place::Cpu(renderer) => renderer.set_picture(settings),
+            Place::Cpu(Some(renderer)) => renderer.set_picture(settings),
+            Place::Cpu(place @ None) => {
+                *place = Some(on_cpu(&self.strands, self.bound.as_ref(), self.mesh.as_deref(), settings)?);
+                Ok(())
+            }
             Place::Gpu(renderer) => renderer.set_picture(settings),
         };
         if let Err(failure) = changed {
@@ -176,10 +177,15 @@ impl Painter {
 
     /// Draws on the CPU, where there is a renderer for it.
     fn draw_on_cpu(&mut self, input: &FrameInput, picture: &mut Picture) -> Result<FrameReport, RenderError> {
-        let renderer = match (&mut self.place, &mut self.stand_in) {
-            (Place::Cpu(renderer), _) | (Place::Gpu(_), Some(renderer)) => renderer,
-            (Place::Gpu(_), None) => unreachable!("made before"),
+        let place = match &mut self.place {
+            Place::Cpu(renderer) => renderer,
+            Place::Gpu(_) => &mut self.stand_in,
         };
+        let made = match place.take() {
+            Some(renderer) => renderer,
+            None => on_cpu(&self.strands, self.bound.as_ref(), self.mesh.as_deref(), &self.settings)?,
+        };
+        let renderer = place.insert(made);
         renderer.show_layers(self.layers_of);
         renderer.draw_into(input, picture)
     }
@@ -188,8 +194,8 @@ impl Painter {
     fn stand_in(&mut self, failure: RenderError) -> Result<(), RenderError> {
         if self.stand_in.is_none() {
             self.notes.push(format!("drawing on the CPU until the scene fits the GPU: {failure}"));
-            let renderer = on_cpu(&self.strands, self.bound.as_ref(), self.mesh.as_deref(), &self.settings)?;
-            self.stand_in = Some(renderer.into());
+            let made = on_cpu(&self.strands, self.bound.as_ref(), self.mesh.as_deref(), &self.settings)?;
+            self.stand_in = Some(made);
         }
         Ok(())
     }
@@ -198,7 +204,8 @@ impl Painter {
     pub fn maps(&self, light: usize) -> Result<Option<[Picture; 2]>, RenderError> {
         let pair = match (&self.place, self.stand_in.as_ref().filter(|_| self.stands_in)) {
             (_, Some(renderer)) => (renderer.opacity_map(light), renderer.depth_map(light)),
-            (Place::Cpu(renderer), None) => (renderer.opacity_map(light), renderer.depth_map(light)),
+            (Place::Cpu(Some(renderer)), None) => (renderer.opacity_map(light), renderer.depth_map(light)),
+            (Place::Cpu(None), None) => return Ok(None),
             (Place::Gpu(renderer), None) => (renderer.opacity_map(light)?, renderer.depth_map(light)?),
         };
         Ok(pair.0.zip(pair.1).map(|(opacity, depth)| [opacity, depth]))
@@ -224,8 +231,8 @@ impl Painter {
     /// Draws on the CPU from now on, after a failure of the device.
     pub fn fall_back_after(&mut self, failure: &str, settings: &PictureSettings) -> Result<(), RenderError> {
         if self.gpu().is_some() {
-            let renderer = on_cpu(&self.strands, self.bound.as_ref(), self.mesh.as_deref(), settings)?;
-            self.place = Place::Cpu(renderer.into());
+            let made = on_cpu(&self.strands, self.bound.as_ref(), self.mesh.as_deref(), settings)?;
+            self.place = Place::Cpu(Some(made));
             self.notes.push(format!("drawing on the CPU from here on: {failure}"));
         }
         Ok(())
@@ -238,12 +245,12 @@ fn on_cpu(
     bound: Option<&BoundStrands>,
     mesh: Option<&Mesh>,
     settings: &PictureSettings,
-) -> Result<Renderer, RenderError> {
+) -> Result<Box<Renderer>, RenderError> {
     let mut renderer = Renderer::new(strands, mesh, settings)?;
     if let Some(bound) = bound {
         renderer.bind(bound.binding(), bound.solids())?;
     }
-    Ok(renderer)
+    Ok(renderer.into())
 }
 
 /// A renderer on a GPU, which places bound strands.
