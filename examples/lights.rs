@@ -23,6 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut scene = Scene::demo();
     scene.set_style(Style::Wavy);
     scene.style.strand_count = if quick { 40 } else { 1000 };
+    scene.look.follow_strands = if quick { 4 } else { scene.look.follow_strands };
     let (width, height) = if quick { (48, 52) } else { (240, 264) };
     scene.body.spacing = if quick { 0.01 } else { scene.body.spacing };
     scene.picture = PictureSettings { width, height, ..scene.picture };
@@ -32,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut rows = Vec::new();
     for lights in 0..6 {
         let mut row = Vec::new();
-        for colour in COLOURS {
+        for colour in COLOURS.into_iter().step_by(if quick { 3 } else { 1 }) {
             let mut look = Look { follow_strands: scene.look.follow_strands, ..Look::named(colour) };
             look.shadow.map_size = 512;
             hair.set_lights(match lights {

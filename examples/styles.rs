@@ -96,6 +96,7 @@ fn grown(style: Style, settings: &[&str], quick: bool) -> Result<(Hair, Camera),
     (scene.picture.width, scene.picture.height) = (side, side);
     if quick {
         (scene.style.strand_count, scene.body.spacing) = (40, 0.01);
+        scene.look.follow_strands = 4;
     }
     if matches!(style.name(), "bun" | "braid") {
         scene.camera.view = View::Side;

@@ -37,6 +37,7 @@ impl Setup {
         (scene.picture.width, scene.picture.height) = self.size(width, height);
         if self.quick {
             (scene.style.strand_count, scene.body.spacing) = (50, 0.02);
+            scene.look.follow_strands = scene.look.follow_strands.min(8);
         }
         let mut hair = Hair::from_prepared(Prepared::new(&scene)?, self.backend)?;
         let head = hair.head().clone();
