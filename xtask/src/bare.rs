@@ -11,20 +11,9 @@ const UNWANTED: [&str; 4] = ["wgpu", "eframe", "egui", "winit"];
 /// The words for cargo that choose it.
 const CHOICE: [&str; 3] = ["--package", "strandline-cli", "--no-default-features"];
 
-/// The words for cargo that choose all crates with features, without these.
-pub const WITHOUT_FEATURES: [&str; 11] = [
-    "--package",
-    "strandline-gpu",
-    "--package",
-    "strandline-sim",
-    "--package",
-    "strandline-render",
-    "--package",
-    "strandline",
-    "--package",
-    "strandline-cli",
-    "--no-default-features",
-];
+/// The packages that have features for GPUs and the window.
+pub const PACKAGES: [&str; 5] =
+    ["strandline-gpu", "strandline-sim", "strandline-render", "strandline", "strandline-cli"];
 
 /// Commands of the trial run, in a folder of its own: a step of hair, and a picture of it.
 const RUNS: [&[&str]; 2] = [

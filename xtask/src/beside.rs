@@ -1,5 +1,6 @@
 //! Lints and documentation of our crates from the dependencies that are built for the tests. `cargo clippy` and
-//! `cargo doc` check all dependencies once more, which takes as long as everything that they say of our crates.
+//! `cargo doc` check all dependencies once more, which takes as long as everything that they say of our crates. Lints
+//! without GPUs and window run here too.
 //!
 //! Cargo calls [`compile`] in place of rustc for crates of the workspace (`RUSTC_WORKSPACE_WRAPPER`). Cargo keeps what
 //! was compiled this way apart from what rustc compiled alone: this is for a fresh checkout, as in CI.
@@ -7,7 +8,12 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
+use crate::bare;
 use crate::cargo::{compile_through, root, wrapper};
+
+/// Crates in whose loops the tests spend their time. As one unit they compile 1.4 times as long and run a quarter faster:
+/// nothing is inlined across units. That pays where all tests run once, not where somebody edits them.
+const LOOPS: [&str; 3] = ["strandline_body", "strandline_sim", "strandline_render"];
 
 /// Set for the copy of this program that cargo calls.
 const CALLED: &str = "STRANDLINE_COMPILES_AND_LINTS";
@@ -29,8 +35,11 @@ pub fn begin() -> bool {
     // Cargo builds this program anew while it runs.
     let copy = folder.join("xtask");
     // Other versions of the tools wrote files that these do not read.
-    let _ = std::fs::remove_dir_all(folder.join("out"));
+    for made in ["out", "bare"] {
+        let _ = std::fs::remove_dir_all(folder.join(made));
+    }
     let made = std::fs::create_dir_all(folder.join("out"))
+        .and_then(|()| std::fs::create_dir_all(folder.join("bare")))
         .and_then(|()| std::fs::copy(std::env::current_exe()?, &copy));
     if let Err(error) = &made {
         println!("lints are not run beside the build: {error}");
@@ -71,24 +80,31 @@ pub fn is_called() -> bool {
         && std::env::args().nth(1).is_some_and(|word| Path::new(&word).file_stem() == Some("rustc".as_ref()))
 }
 
-/// Compiles a crate as rustc would, then lints it, then documents a library or a program.
+/// Compiles a crate as rustc would, then lints it, then documents a library or a program. A crate with features is linted
+/// without them first: cargo begins with those that depend on it as soon as rustc knows its items.
 pub fn compile() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(2).collect();
     let out = root().join(FOLDER).join("out");
     let rustc = std::env::args().nth(1).unwrap_or_default();
-    let mut commands = vec![(rustc, words.clone())];
+    let with = |mut words: Vec<String>, more: &[&str]| {
+        words.extend(more.iter().map(|&word| word.to_owned()));
+        words
+    };
+    let units = if has_loops(&words) { &["-C", "codegen-units=1"][..] } else { &[] };
+    let mut commands = vec![(rustc, with(words.clone(), units))];
+    let is_documented = is_crate(&words) && is_documented(&words);
     if is_crate(&words) {
-        let with = |mut words: Vec<String>, more: &[&str]| {
-            words.extend(more.iter().map(|&word| word.to_owned()));
-            words
-        };
         let metadata = with(elsewhere(&words, &out), &["--emit=metadata", "-D", "warnings"]);
         commands.push(("clippy-driver".to_owned(), metadata));
-        if is_documented(&words) {
+        if is_documented {
             let private = if is_program(&words) { &["--document-private-items"][..] } else { &[] };
             let documented = with(with(elsewhere(&words, &out), &["-D", "warnings"]), private);
             commands.push(("rustdoc".to_owned(), documented));
         }
+    }
+    let bare = is_documented.then(|| without_features(&words, &manifest(), &out.with_file_name("bare")));
+    if let Some(bare) = bare.flatten() {
+        commands.insert(0, ("clippy-driver".to_owned(), with(bare, &["--emit=metadata", "-D", "warnings"])));
     }
     for (program, words) in commands {
         match Command::new(&program).args(words).status() {
@@ -101,6 +117,18 @@ pub fn compile() -> ExitCode {
         }
     }
     ExitCode::SUCCESS
+}
+
+/// The manifest of the package that cargo compiles.
+fn manifest() -> String {
+    let folder = std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default();
+    std::fs::read_to_string(Path::new(&folder).join("Cargo.toml")).unwrap_or_default()
+}
+
+/// True for a library of [`LOOPS`], and not for its own tests.
+fn has_loops(words: &[String]) -> bool {
+    let is_one = |pair: &[String]| pair[0] == "--crate-name" && LOOPS.contains(&pair[1].as_str());
+    words.windows(2).any(is_one) && !words.iter().any(|word| word == "--test")
 }
 
 /// True where a crate is compiled; cargo also asks rustc about itself.
@@ -121,6 +149,50 @@ fn is_documented(words: &[String]) -> bool {
 /// True for a program and an example.
 fn is_program(words: &[String]) -> bool {
     words.windows(2).any(|pair| pair[0] == "--crate-type" && pair[1] == "bin")
+}
+
+/// The same crate without features and what they alone depend on, into a folder of its own from those that lie there;
+/// `None` for a crate that has none, and for an example.
+fn without_features(words: &[String], manifest: &str, out: &Path) -> Option<Vec<String>> {
+    let name = words.windows(2).find(|pair| pair[0] == "--crate-name").map(|pair| pair[1].as_str());
+    name.filter(|name| is_bare(name))?;
+    let optional: Vec<&str> = manifest
+        .lines()
+        .filter(|line| line.contains("optional = true"))
+        .filter_map(|line| line.split(" =").next())
+        .collect();
+    let mut bare = Vec::new();
+    let mut rest = elsewhere(words, out).into_iter();
+    while let Some(word) = rest.next() {
+        let value = if matches!(word.as_str(), "--cfg" | "--extern") { rest.next() } else { None };
+        let Some(value) = value else {
+            bare.push(word);
+            continue;
+        };
+        if word == "--cfg" && value.starts_with("feature=") {
+            continue;
+        }
+        let other = value.split('=').next().unwrap_or_default();
+        if word == "--extern" && optional.contains(&other.replace('_', "-").as_str()) {
+            continue;
+        }
+        let value = if is_bare(other) { in_folder(&value, out) } else { value };
+        bare.extend([word, value]);
+    }
+    bare.extend(["-L".to_owned(), format!("dependency={}", out.display())]);
+    Some(bare)
+}
+
+/// True for the name of a crate that has features.
+fn is_bare(name: &str) -> bool {
+    bare::PACKAGES.contains(&name.replace('_', "-").as_str())
+}
+
+/// `NAME=FILE` with the metadata of that name in a folder.
+fn in_folder(known: &str, folder: &Path) -> String {
+    let Some((name, file)) = known.split_once('=') else { return known.to_owned() };
+    let file = folder.join(Path::new(file).with_extension("rmeta").file_name().unwrap_or_default());
+    format!("{name}={}", file.display())
 }
 
 /// The same crate into another folder: files that cargo keeps are not touched, and no file is announced for which it
@@ -172,8 +244,33 @@ mod tests {
     }
 
     #[test]
+    fn a_crate_without_features_sees_none_of_what_they_add() {
+        let cargo = words(
+            "--crate-name strandline_render src/lib.rs --crate-type lib --emit=metadata,link -C opt-level=2 \
+             --cfg feature=\"default\" --cfg feature=\"gpu\" --check-cfg cfg(docsrs) --out-dir /t/debug/deps \
+             -L dependency=/t/debug/deps --extern bytemuck=/t/libbytemuck-1.rmeta --extern glam=/t/libglam-2.rmeta \
+             --extern strandline_gpu=/t/libstrandline_gpu-3.rlib --extern strandline_base=/t/libstrandline_base-4.rmeta",
+        );
+        let manifest =
+            "[dependencies]\nbytemuck = { workspace = true, optional = true }\nglam.workspace = true\n";
+        let bare = words(
+            "--crate-name strandline_render src/lib.rs --crate-type lib -C opt-level=2 --check-cfg cfg(docsrs) \
+             -L dependency=/t/debug/deps --extern glam=/t/libglam-2.rmeta \
+             --extern strandline_gpu=/b/libstrandline_gpu-3.rmeta \
+             --extern strandline_base=/t/libstrandline_base-4.rmeta --out-dir /b -L dependency=/b",
+        );
+        assert_eq!(without_features(&cargo, manifest, Path::new("/b")), Some(bare));
+        assert_eq!(
+            without_features(&words("--crate-name strandline_base src/lib.rs"), "", Path::new("/b")),
+            None
+        );
+    }
+
+    #[test]
     fn questions_of_cargo_are_no_crates() {
         assert!(!is_crate(&words("-vV")));
+        assert!(has_loops(&words("--crate-name strandline_sim --crate-type lib")));
+        assert!(!has_loops(&words("--crate-name strandline_sim --test")) && !has_loops(&words("-vV")));
         assert!(!is_crate(&words("- --crate-name ___ --print=file-names --crate-type bin")));
         assert!(is_program(&words("--crate-name xtask src/main.rs --crate-type bin --emit=link")));
         for other in [
