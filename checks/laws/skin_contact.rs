@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::{DVec3, Quat, Vec3, vec3};
 use rayon::prelude::*;
 use strandline_body::{
-    BodyFrame, Carrier, Collider, DistanceGrid, Mannequin, Mesh, Pose, Shape, SignedDistance, SkinRoots,
-    SkinSolid,
+    BodyFrame, Carrier, Collider, DistanceGrid, Mannequin, Mesh, Pose, PosedSkin, Shape, SignedDistance,
+    SkinRoots, SkinSolid,
 };
 use strandline_checks::{On, Rig, gpu, law};
 use strandline_groom::{Groom, Guides, LANES, Lanes};
@@ -237,6 +237,42 @@ fn planes_of_points_tell_the_same_cells() {
     let count = |kind| expected.iter().filter(|found| **found == kind).count();
     assert!(count(Kind::Solid) > 20 && count(Kind::Fluid) > 20, "{} solid cells", count(Kind::Solid));
     assert_eq!(kinds(true), expected);
+}
+
+/// Walls between fluid and solid cells have the velocity of the skin about them, as an exhaustive search has it.
+#[test]
+fn walls_move_as_the_skin_about_them() {
+    let bust = Bust::new(240);
+    let model = bust.model(bust.skin.clone());
+    let frame = |step: usize| bust.frame(step as f32 * STEP);
+    let mut state = model.rest_state(frame(29));
+    let mut runner = CpuRunner::from(model.clone());
+    runner.step(&mut state, &Drive::of(frame(30)));
+    let obstacles = Obstacles::new(model.colliders(), frame(29), frame(30), STEP);
+    let mass = vec![Lanes([1e-6; LANES]); state.positions.len()];
+    let mut volume = Volume::new(&VolumeSettings::default(), bust.guides.strand_count(), POINTS);
+    splat(&mut volume, &state.positions, &state.velocities, &mass);
+    mark(&mut volume, &obstacles, Some((&state.positions[..], state.contacts())), None);
+    let (grid, faces, count) = (&volume.grid, volume.contents().faces, volume.grid.cell_count());
+    let (mut walls, mut fast, mut most, mut sum) = (0, 0, 0.0_f32, 0.0);
+    for cell in volume.fluid().iter().map(|cell| *cell as usize) {
+        for (axis, stride) in grid.strides().into_iter().enumerate() {
+            for (neighbour, face) in [(cell - stride, cell), (cell + stride, cell + stride)] {
+                if volume.kind(neighbour) != Kind::Solid {
+                    continue;
+                }
+                let (place, mut near) = (grid.face_center(axis, face), PosedSkin::UNKNOWN);
+                obstacles.distance(place, &mut near);
+                let exact = obstacles.velocity_there(place, &mut near).unwrap()[axis];
+                let off = (faces[axis * count + face][0] - exact).abs();
+                (walls, most, sum) = (walls + 1, most.max(off), sum + off);
+                fast += usize::from(exact.abs() > 0.05);
+            }
+        }
+    }
+    let mean = sum / walls as f32;
+    assert!(walls > 100 && fast > 30, "{fast} of {walls} walls move");
+    assert!(mean < 2e-3 && most < 0.03, "{mean} m/s off, {most} m/s at most");
 }
 
 /// A closed tube along y of 40 cm, and guides that stand on it around its middle.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{Mat3, Vec3, Vec3A};
-use strandline_base::par::prelude::*;
+use strandline_base::par::{self, prelude::*};
 use strandline_base::{LANES, Vec3Lanes};
 
 use crate::local_shifts::LocalShifts;
@@ -85,22 +85,29 @@ impl PosedSkin {
         if skins.iter().all(Option::is_none) {
             return None;
         }
-        let [start, end] = skins.map(|skin| solid.positions(skin.map(|skin| &skin[..])));
-        let pairs = start.iter().zip(&end);
+        let positions = |skin: Option<&Arc<[Vec3]>>| solid.positions(skin.map(|skin| &skin[..]));
+        let (start, end) = par::join(|| positions(skins[0]), || positions(skins[1]));
+        let pairs = start.par_iter().zip(&end).with_min_len(4096);
         let squares: Vec<f32> = pairs.map(|(start, end)| start.distance_squared(*end)).collect();
         let most_shift = squares.iter().copied().fold(0.0, f32::max).sqrt();
-        let boxes = solid.boxes_about(&end);
         let made_of = skins.map(|skin| skin.cloned());
         let moves = most_shift > 0.0;
-        let leaves = |part: usize| solid.shifts_of_leaves(part, &boxes, &squares);
-        let shifts = if moves { LocalShifts::new(boxes[0], solid.part_count(), leaves) } else { None };
+        let boxes_and_shifts = || {
+            let boxes = solid.boxes_about(&end);
+            let leaves = |part: usize| solid.shifts_of_leaves(part, &boxes, &squares);
+            let shifts = if moves { LocalShifts::new(boxes[0], solid.part_count(), leaves) } else { None };
+            (boxes, shifts)
+        };
         let drift = |corners: &[u32; 3]| {
             let way = |corner: &u32| end[*corner as usize] - start[*corner as usize];
             corners.iter().map(way).sum::<Vec3>() / 3.0
         };
-        let triangles = if moves { &solid.triangles[..] } else { &[] };
-        let drifts = triangles.par_iter().with_min_len(2048).map(drift).collect();
-        let [facing, before] = solid.facings([&end, &start], most_shift);
+        let drifts_and_facings = || {
+            let triangles = if moves { &solid.triangles[..] } else { &[] };
+            let drifts = triangles.par_iter().with_min_len(2048).map(drift).collect();
+            (drifts, solid.facings([&end, &start], most_shift))
+        };
+        let ((boxes, shifts), (drifts, [facing, before])) = par::join(boxes_and_shifts, drifts_and_facings);
         let turns_over = facing != before;
         let solid = Arc::clone(solid);
         Some(Self { solid, made_of, start, end, boxes, most_shift, shifts, drifts, facing, turns_over })
@@ -191,13 +198,26 @@ impl PosedSkin {
 
     /// Lower bound \[m\] of the distance of a point at the end, 0 where it may be inside.
     pub fn at_least(&self, point: Vec3) -> f32 {
-        self.at_least_about(point, NONE).0
+        self.at_least_about(point, NONE, 0.0).0
     }
 
-    /// The same by a search that begins at a triangle near the point, and a triangle nearer to it.
-    pub fn at_least_about(&self, point: Vec3, before: u32) -> (f32, u32) {
+    /// The same by a search that begins at a triangle near the point, and a triangle nearer to it. Bounds of no more than
+    /// `enough` \[m\] are not looked for: 0 where that triangle is so near already.
+    pub fn at_least_about(&self, point: Vec3, before: u32, enough: f32) -> (f32, u32) {
+        if enough > 0.0 && (before as usize) < self.solid.triangles.len() {
+            let place = nearest_on(self.corners(&self.end, before), point).0;
+            if AT_LEAST * point.distance(place) <= enough {
+                return (0.0, before);
+            }
+        }
         let (triangle, squared) = self.search(point, before, QUICK);
         (AT_LEAST * self.seen(point, triangle, squared.sqrt()).distance.max(0.0), triangle)
+    }
+
+    /// A triangle about as near to a point \[m\] at the end of the step as the nearest: no more than a quarter farther. The search
+    /// begins at one near it.
+    pub fn triangle_about(&self, point: Vec3, before: u32) -> u32 {
+        self.search(point, before, QUICK).0
     }
 
     /// The nearest triangle, and its squared distance; nodes are left out whose squared distance is more than `slack`

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
-use strandline_base::par::prelude::*;
+use strandline_base::par::{self, prelude::*};
 
 use crate::inside_out::RestVolume;
 use crate::polar::rotation_of;
@@ -153,19 +153,24 @@ impl SkinRoots {
         if body.roots().is_some() || self.roots.is_empty() {
             return body;
         }
-        let side = f64::from(self.volume.side(&skin, &self.triangles));
+        let roots = par::awake(|| self.poses(&skin, &body, last));
+        body.with_skin_roots(roots)
+    }
+
+    /// Root frames on a skin.
+    fn poses(&self, skin: &[Vec3], body: &BodyFrame, last: &BodyFrame) -> Arc<[Pose]> {
+        let side = f64::from(self.volume.side(skin, &self.triangles));
         let turns: Vec<Option<DQuat>> =
-            self.corners.par_iter().map(|corner| self.rotation(corner, &skin, side)).collect();
+            self.corners.par_iter().map(|corner| self.rotation(corner, skin, side)).collect();
         let world_from_head = body.world_from_head();
         let head_from_last = last.world_from_head().inverse();
         let root = |(index, place): (usize, &Place)| {
             let rotation = place
                 .rotation(&turns)
                 .unwrap_or_else(|| (head_from_last.rotation * last.root(index).rotation).normalize());
-            place.frame(rotation, &skin).carried_by(&world_from_head)
+            place.frame(rotation, skin).carried_by(&world_from_head)
         };
-        let roots: Arc<[Pose]> = self.roots.par_iter().enumerate().map(root).collect();
-        body.with_skin_roots(roots)
+        self.roots.par_iter().enumerate().map(root).collect()
     }
 
     /// A frame that was saved with its root frames: where they follow from its skin, they do so in frames between it and

@@ -56,9 +56,14 @@ pub fn solid(mesh: &Mesh, spacing: f32) -> Arc<SkinSolid> {
     Arc::new(SkinSolid::new(mesh, Arc::new(grid)).unwrap())
 }
 
+/// Bound \[m\] that suffices.
+const ENOUGH: f32 = 0.1;
+
 /// Compares distances at many places about a skin with those of the deformed mesh.
 fn compare(mesh: &Mesh, solid: &Arc<SkinSolid>, skin: &Arc<[Vec3]>, count: usize) {
-    let posed = PosedSkin::new(solid, [None, Some(skin)]).unwrap();
+    // Material moves by half of its place.
+    let half: Arc<[Vec3]> = skin.iter().map(|place| 0.5 * *place).collect();
+    let posed = PosedSkin::new(solid, [Some(&half), Some(skin)]).unwrap();
     let deformed = Mesh::new(skin.to_vec(), mesh.triangles.clone()).unwrap().closed();
     let bounds = deformed.bounds().unwrap();
     let (middle, size) = (0.5 * (bounds.min + bounds.max), 0.6 * (bounds.max - bounds.min));
@@ -69,11 +74,20 @@ fn compare(mesh: &Mesh, solid: &Arc<SkinSolid>, skin: &Arc<[Vec3]>, count: usize
         })
         .collect();
     let mut before = PosedSkin::UNKNOWN;
-    let (mut inside, mut wrong) = (0, 0);
+    let (mut inside, mut wrong, mut quick, mut off) = (0, 0, 0, f32::NEG_INFINITY);
     for (point, place) in points.iter().zip(deformed.nearest_places(&points)) {
         let exact = point.distance(place);
+        let about = 2.0 * posed.shift(posed.triangle_about(*point, before), *point);
+        off = off.max(point.distance(about) - 1.25 * exact);
+        let (known, _) = posed.at_least_about(*point, before, ENOUGH);
         let found = posed.nearest(*point, before);
         before = found.triangle;
+        assert!(known <= found.distance.max(0.0) + 1e-6, "{point}: {known} at least, for {exact}");
+        assert!(
+            found.distance < 1.26 * ENOUGH || known > 0.6 * exact,
+            "{point}: {known} at least, for {exact}"
+        );
+        quick += usize::from(known == 0.0 && found.distance > 1e-5);
         assert!((found.distance.abs() - exact).abs() < 2e-6, "{point}: {} for {exact}", found.distance);
         assert!((found.normal.length() - 1.0).abs() < 1e-5);
         let is_inside = winding(&deformed, *point) > 0.5;
@@ -84,6 +98,8 @@ fn compare(mesh: &Mesh, solid: &Arc<SkinSolid>, skin: &Arc<[Vec3]>, count: usize
         assert!(found.distance < 0.0 || least > 0.6 * exact, "{point}: {least} at least, for {exact}");
     }
     assert!(inside > count / 50, "{inside} of {count} inside");
+    assert!(off < 2e-5, "{off} m farther than a quarter more than the nearest triangle");
+    assert!(quick > 0, "none of {count} needed no search");
     assert_eq!(wrong, 0, "{wrong} of {count} on the wrong side");
 }
 

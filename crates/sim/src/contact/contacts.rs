@@ -159,17 +159,14 @@ impl<'a> Solids<'a> {
             }
             let plane = &mut planes[point];
             let mut rider = riders.get_mut(point).filter(|_| group.skin.is_some());
-            let carried = start.map(|start| group.end_from_start.points(start));
-            let along = group.along(rider.as_deref());
-            let stuck = carried.map(|carried| along.map_or(carried, |along| carried + along));
             let reach = margin + splat(care.near);
-            let look = group.refresh(plane, rider.as_deref_mut(), position, stuck, reach, care.stale);
-            let along = group.along(rider.as_deref());
-            let stuck = carried.map(|carried| along.map_or(carried, |along| carried + along));
+            let look = group.refresh(plane, rider.as_deref_mut(), position, start, reach, care.stale);
             let near = look.near & free;
             if !near.any() {
                 continue;
             }
+            let along = group.along(rider.as_deref());
+            let stuck = start.map(|start| group.stuck(start, along));
             let normal = Vec3x8::load(&plane.normal);
             let anchor = group.world_from_carrier.points(Vec3x8::load(&plane.anchor));
             let normal = group.world_from_carrier.directions(normal);
@@ -263,15 +260,23 @@ impl Group<'_> {
         beyond.simd_gt(way).all()
     }
 
+    /// Positions \[m\] of points that lay at `start` \[m\] and stuck to the solid, whose material moves `along` beside its
+    /// carrier.
+    #[inline(always)]
+    fn stuck(&self, start: Vec3x8, along: Option<Vec3x8>) -> Vec3x8 {
+        let carried = self.end_from_start.points(start);
+        along.map_or(carried, |along| carried + along)
+    }
+
     /// Renews planes that are out of date, for points that matter only within `reach` \[m\] of a solid.
     ///
-    /// `stuck` are the positions of points that stick to the solid, where their paths begin.
+    /// Paths begin where points that lay at `start` \[m\] and stuck to the solid are.
     fn refresh(
         &self,
         plane: &mut Plane,
         mut rider: Option<&mut Plane>,
         position: Vec3x8,
-        stuck: Option<Vec3x8>,
+        start: Option<Vec3x8>,
         reach: f32x8,
         stale: f32,
     ) -> Look {
@@ -285,6 +290,7 @@ impl Group<'_> {
         let mut blocked = [0.0; LANES];
         let (mut here, mut from) = (Vec3Lanes::default(), Vec3Lanes::default());
         local.store(&mut here);
+        let stuck = start.map(|start| self.stuck(start, self.along(rider.as_deref())));
         stuck.map_or(local, |stuck| self.carrier_from_world.points(stuck)).store(&mut from);
         for lane in (0..LANES).filter(|lane| stale & (1 << lane) != 0) {
             let triangle =

@@ -123,12 +123,17 @@ impl<'a> Obstacles<'a> {
     /// one; quicker than [`Self::nearest`]. World space. `before` is the triangle of a skin near the last point, for
     /// points one beside the other.
     pub fn at_least(&self, point: Vec3, before: &mut u32) -> f32 {
+        self.at_least_or(point, before, 0.0)
+    }
+
+    /// The same; where it is no more than `enough` \[m\] it may be 0.
+    pub fn at_least_or(&self, point: Vec3, before: &mut u32, enough: f32) -> f32 {
         let mut least = f32::INFINITY;
         for (collider, skin) in self.solids() {
             let local = self.local(collider, point);
             let found = match skin {
                 Some(skin) => {
-                    let (found, triangle) = skin.at_least_about(local, *before);
+                    let (found, triangle) = skin.at_least_about(local, *before, enough);
                     *before = triangle;
                     found
                 }
@@ -175,7 +180,8 @@ impl<'a> Obstacles<'a> {
     }
 
     /// Mean velocity \[m/s\] over the step of the material of the nearest solid that ends at `point`, `None` without
-    /// solids. Solids with one carrier need no search for the nearest. `before` is as in [`Self::at_least`].
+    /// solids. Solids with one carrier need no search for the nearest. A skin that moves by itself has that of a triangle no more
+    /// than a quarter farther than its nearest. `before` is as in [`Self::at_least`].
     pub fn nearest_velocity(&self, point: Vec3, before: &mut u32) -> Option<Vec3> {
         let first = self.colliders.first()?;
         let together = self.colliders.iter().all(|collider| collider.carrier == first.carrier);
@@ -183,7 +189,7 @@ impl<'a> Obstacles<'a> {
         Some(self.velocity(nearest, point, before, false))
     }
 
-    /// The same at a point of which [`Self::distance`] was asked for last with `before`.
+    /// The same at a point near which `before` is a triangle, as after [`Self::distance`].
     pub fn velocity_there(&self, point: Vec3, before: &mut u32) -> Option<Vec3> {
         if self.colliders.len() != 1 {
             return self.nearest_velocity(point, before);
@@ -192,16 +198,16 @@ impl<'a> Obstacles<'a> {
     }
 
     /// Mean velocity \[m/s\] over the step of the material of a collider that ends at `point`.
-    /// `before` is the nearest triangle already where `is_nearest`.
-    fn velocity(&self, collider: usize, point: Vec3, before: &mut u32, is_nearest: bool) -> Vec3 {
+    /// `before` is a triangle near the point already where `is_near`.
+    fn velocity(&self, collider: usize, point: Vec3, before: &mut u32, is_near: bool) -> Vec3 {
         match self.colliders[collider].carrier {
             Carrier::World => Vec3::ZERO,
             Carrier::Piece(piece) | Carrier::Moved(piece) => {
                 let Placed { start, piece_from_world, .. } = self.pieces[usize::from(piece)];
                 let local = piece_from_world.point(point);
                 let shift = self.skins[collider].as_ref().map_or(Vec3::ZERO, |skin| {
-                    if !is_nearest {
-                        *before = skin.nearest(local, *before).triangle;
+                    if !is_near {
+                        *before = skin.triangle_about(local, *before);
                     }
                     skin.shift(*before, local)
                 });

@@ -156,7 +156,7 @@ fn distances(grid: &Grid, obstacles: &Obstacles, cells: &[u32], enough: f32) -> 
             let place = center(cell);
             *distance = last.1 - place.distance(last.0);
             if !is_moving || *distance <= enough {
-                *distance = obstacles.at_least(place, &mut near);
+                *distance = obstacles.at_least_or(place, &mut near, enough);
                 last = (place, *distance);
             }
         }
@@ -168,6 +168,24 @@ fn distances(grid: &Grid, obstacles: &Obstacles, cells: &[u32], enough: f32) -> 
     distances
 }
 
+/// The triangle of a skin that moves by itself about which the last wall was.
+struct Near {
+    triangle: u32,
+    /// True where it was a wall of the same cell: all walls of a cell move as the material about the first.
+    is_here: bool,
+}
+
+impl Near {
+    /// Velocity \[m/s\] of the solid about a place; `None` without solids.
+    fn velocity(&mut self, obstacles: &Obstacles, place: Vec3) -> Option<Vec3> {
+        if std::mem::replace(&mut self.is_here, true) {
+            obstacles.velocity_there(place, &mut self.triangle)
+        } else {
+            obstacles.nearest_velocity(place, &mut self.triangle)
+        }
+    }
+}
+
 /// Sets faces between fluid and solid cells to the velocity of the solid.
 fn carry_walls(volume: &mut Volume, obstacles: &Obstacles) {
     let strides = volume.grid.strides();
@@ -175,17 +193,19 @@ fn carry_walls(volume: &mut Volume, obstacles: &Obstacles) {
         strides.into_iter().enumerate().flat_map(|(axis, stride)| [(axis, stride, 0), (axis, stride, 1)]);
     let sides: Vec<(usize, usize, usize)> = sides.collect();
     let (grid, kinds) = (&volume.grid, &volume.kinds);
-    let wall = |cell: usize, (axis, stride, behind): (usize, usize, usize), near: &mut u32| {
+    let wall = |cell: usize, (axis, stride, behind): (usize, usize, usize), near: &mut Near| {
         let neighbour = if behind == 1 { cell + stride } else { cell - stride };
         (kinds[neighbour] == Kind::Solid).then(|| {
             let center = grid.face_center(axis, cell + behind * stride);
-            obstacles.nearest_velocity(center, near).map_or(0.0, |velocity| velocity[axis])
+            let velocity = near.velocity(obstacles, center);
+            velocity.map_or(0.0, |velocity| velocity[axis])
         })
     };
     let around = |cells: &[u32]| {
-        let mut near = PosedSkin::UNKNOWN;
+        let mut near = Near { triangle: PosedSkin::UNKNOWN, is_here: false };
         let walls = cells.iter().filter_map(|&cell| -> Option<(usize, [Option<f32>; 6])> {
             let cell = cell as usize;
+            near.is_here = false;
             let walls = std::array::from_fn(|side| wall(cell, sides[side], &mut near));
             walls.iter().any(Option::is_some).then_some((cell, walls))
         });

@@ -212,8 +212,9 @@ impl WindBox {
     }
 
     /// Marks the cells of a row by the sides of their middles of a skin that moves by itself. Its velocity is that of a triangle
-    /// about as near as the nearest: the search for that takes long far inside. Air outside meets no cell of `deep`, one bit
-    /// each: these move as the triangle of the cell before them.
+    /// about as near as the nearest: the search for that takes long far inside. A triangle beside the cell before it that lies
+    /// about as near as a cell is long serves as well. Air outside meets no cell of `deep`, one bit each: these move as the
+    /// triangle of the cell before them.
     fn add_skin(
         &self,
         obstacles: &Obstacles,
@@ -224,7 +225,7 @@ impl WindBox {
         let mut near = PosedSkin::UNKNOWN;
         let mut fill = |content: &mut Content, place: Vec3, is_deep: bool| {
             if !is_deep || near == PosedSkin::UNKNOWN {
-                obstacles.at_least(place, &mut near);
+                obstacles.at_least_or(place, &mut near, self.edges.min_element());
             }
             self.fill(content, obstacles, place, &mut near);
         };
