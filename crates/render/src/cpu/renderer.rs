@@ -48,6 +48,8 @@ impl Renderer {
     pub fn set_picture(&mut self, settings: &PictureSettings) -> Result<(), RenderError> {
         settings.validate()?;
         self.settings = *settings;
+        let scale = settings.supersampling;
+        self.scratch.samples.resize((settings.width * scale) as usize, (settings.height * scale) as usize);
         Ok(())
     }
 
@@ -117,10 +119,6 @@ impl Renderer {
             (self.scratch.guides.strand_count(), self.scratch.guides.points_per_strand());
         // Places of lights with an area are counted there.
         input.check_memory(strand_count, points, &level, &self.settings)?;
-        // Whoever draws nothing needs no samples.
-        let [width, height] = [self.settings.width, self.settings.height]
-            .map(|size| (size * self.settings.supersampling) as usize);
-        self.scratch.samples.resize(width, height);
         let lights = at_samples(input.lights, input.look.suns());
         let layers_of = self.layers_of.map(|light| first_sample(input.lights, light));
         let drawn = if self.scratch.carried.is_some() { Drawn::Carried } else { Drawn::Guides };
