@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use strandline_body::{BodyFrame, Mesh};
 use strandline_checks::{On, law};
 use strandline_gpu::Gpu;
@@ -28,10 +28,11 @@ fn highlight_row(picture: &Linear) -> usize {
     (2..picture.height - 2).max_by(|one, other| mean(one).total_cmp(&mean(other))).unwrap()
 }
 
-/// Strands as they lie: uniform cubic B-splines through tripled end points, resampled.
-fn guides(groom: &Groom, width: f32, points: usize) -> Guides {
+/// Strands as they lie, turned: uniform cubic B-splines through tripled end points, resampled.
+fn guides(groom: &Groom, width: f32, points: usize, turn: Quat) -> Guides {
     let mut lines = Groom::empty(width);
-    (0..groom.strand_count()).for_each(|strand| lines.push(spline(groom.strand(strand))));
+    (0..groom.strand_count())
+        .for_each(|strand| lines.push(spline(groom.strand(strand)).into_iter().map(|point| turn * point)));
     Guides::resample(&lines, points).unwrap()
 }
 
@@ -143,15 +144,21 @@ const FULL: LevelOfDetail = LevelOfDetail {
 
 /// The groom on a ball.
 pub fn sphere(light: Option<Light>, around: f32) -> Scene {
+    turned_sphere(Quat::IDENTITY, light, around)
+}
+
+/// The groom on a ball; hair, light and camera are turned together.
+pub fn turned_sphere(turn: Quat, light: Option<Light>, around: f32) -> Scene {
     let groom = Groom::load(folder().join("shadow_groom.hair")).unwrap();
     let even = Vec3::splat(around);
     let chiang = Chiang { eumelanin: 0.6, pheomelanin: 0.2, ..Chiang::default() };
     Scene {
-        guides: guides(&groom, 4e-4, 48),
+        guides: guides(&groom, 4e-4, 48, turn),
         body: Some(ball()),
         camera: Camera {
-            position: Vec3::new(0.0, 0.04, 0.75),
-            target: Vec3::new(0.0, -0.01, 0.0),
+            position: turn * Vec3::new(0.0, 0.04, 0.75),
+            target: turn * Vec3::new(0.0, -0.01, 0.0),
+            up: turn * Vec3::Y,
             field_of_view: 30.0,
             ..Camera::default()
         },
@@ -165,7 +172,7 @@ pub fn sphere(light: Option<Light>, around: f32) -> Scene {
             scalp: 0.0,
             ..BodyLook::default()
         },
-        lights: light.into_iter().collect(),
+        lights: light.map(|light| Light { position: turn * light.position, ..light }).into_iter().collect(),
         settings: PictureSettings {
             supersampling: 1,
             tone_map: ToneMap::Off,
@@ -297,7 +304,7 @@ fn head(folder: &Path, lights: Vec<Light>) -> Scene {
     let around = Vec3::new(0.12, 0.13, 0.145);
     let chiang = Chiang { eumelanin: 0.6, pheomelanin: 0.2, roughness_along: 0.25, ..Chiang::default() };
     Scene {
-        guides: guides(&groom, 1e-4, 40),
+        guides: guides(&groom, 1e-4, 40, Quat::IDENTITY),
         body: Some(Mesh::load(&folder.join("bust.obj"), 1.0).unwrap()),
         camera: Camera {
             position: Vec3::new(0.6501, 0.0978, 0.8073),

@@ -21,10 +21,14 @@ pub struct OwnColors {
 impl OwnColors {
     /// Those of guides, where they have some.
     pub fn of(guides: &Guides) -> Option<Self> {
-        let colors = guides.colors().filter(|colors| !colors.is_empty())?;
+        Self::of_points(guides.colors()?)
+    }
+
+    /// Those of points, shape `[point]`, linear RGB; none where there are no points.
+    pub fn of_points(colors: &[[f32; 3]]) -> Option<Self> {
         let all = || colors.iter().map(|&color| Vec3::from(color));
         let sum: DVec3 = all().map(|color| color.as_dvec3()).sum();
-        Some(Self {
+        (!colors.is_empty()).then(|| Self {
             mean: (sum / colors.len() as f64).as_vec3(),
             darkest: all().fold(Vec3::MAX, Vec3::min),
             lightest: all().fold(Vec3::MIN, Vec3::max),

@@ -1,9 +1,10 @@
 //! Memory of a scene, checked before anything of it is grown.
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use strandline_base::memory;
 
-use crate::{Error, Scene, render::memory::Drawn};
+use crate::render::{OwnColors, memory::Drawn};
+use crate::{Error, Scene};
 
 /// Refuses a scene that would take more memory than a run may, by its numbers of simulated and of drawn strands and the
 /// colours that these have of their own, shape `[point]`, linear RGB.
@@ -18,15 +19,10 @@ pub(crate) fn check(
     let default = scene.look.lights(Vec3::ZERO);
     let lights = if scene.lights.is_empty() { &default } else { &scene.lights };
     let (look, picture) = (&scene.look, &scene.picture);
-    let own_color = colors.filter(|colors| !colors.is_empty()).map(mean);
+    let own_color = colors.and_then(OwnColors::of_points).map(|own| own.mean);
     let drawn = Drawn { guide_count: drawn, points_per_strand, look, lights, picture, own_color };
     needs.extend(drawn.memory(&scene.level_of_detail));
     Ok(memory::check(&needs)?)
-}
-
-fn mean(colors: &[[f32; 3]]) -> Vec3 {
-    let sum: DVec3 = colors.iter().map(|color| Vec3::from(*color).as_dvec3()).sum();
-    (sum / colors.len() as f64).as_vec3()
 }
 
 #[cfg(test)]
