@@ -159,9 +159,13 @@ fn drawn_strands_are_no_copies_of_others() {
     for style in styles {
         let found = likeness(&drawn(&scene(style)), n);
         println!("{}: {:.1} % of the strands run beside another one", style.name(), 100.0 * found);
-        // 5 % is asked for. Of a ponytail 6.6 % were seen, of a braid 5.5, of a bun 5.4: known faults of docs/gallery.md.
-        let is_tied = matches!(style, Style::Ponytail | Style::Bun | Style::Braid);
-        let most = if is_tied && in_full() { 0.07 } else { 0.05 };
+        // 5 % is asked for. Of a ponytail 6.9 % were seen, of a bun 5.2: known faults of docs/gallery.md. A third of them and
+        // more are follow strands rooted within that distance of their own.
+        let most = match style {
+            Style::Ponytail if in_full() => 0.07,
+            Style::Bun if in_full() => 0.055,
+            _ => 0.05,
+        };
         alike.extend((found > most).then_some((style, found)));
     }
     assert!(alike.is_empty(), "{alike:?}");

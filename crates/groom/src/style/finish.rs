@@ -7,10 +7,10 @@ use strandline_base::math;
 use strandline_base::par::prelude::*;
 use strandline_body::{Random, Scalp};
 
-use super::StyleSettings;
 use super::comb::smooth;
 use super::skin::Skin;
 use super::strand::{CLEARANCE, Strand};
+use super::{Style, StyleSettings};
 use crate::arcs::equal_arcs;
 
 /// Angle \[rad\] by which disorder of a strand in a lock of curls is out of step with that of the lock.
@@ -18,6 +18,9 @@ const OUT_OF_STEP: f32 = 0.7;
 /// Shares of their length between which curls close to locks, and the pull of these over that of other locks.
 const CURLS_CLOSE: [f32; 2] = [0.04, 0.35];
 const CURLS_HELD: f32 = 1.2;
+/// Length \[m\] from the root by which curls have their radius, and the same of an afro, whose coils hide the scalp.
+const CURLED: f32 = 0.08;
+const CURLED_AFRO: f32 = 0.05;
 /// Most of the way to the middle of its lock that a guide is drawn: none is a copy of another.
 const MOST_PULL: f32 = 0.85;
 
@@ -167,8 +170,9 @@ impl Bends {
     pub fn offset(&self, settings: &StyleSettings, [side, up]: [Vec3; 2], share: f32, length: f32) -> Vec3 {
         let along = share * length;
         let wave = settings.wave_amplitude * smooth(0.02, 0.16, along);
-        let curl = settings.curl_radius * smooth(0.005, 0.08, along);
-        let (mut waved, mut curled) = (Vec3::ZERO, Vec3::ZERO);
+        let curled = if settings.style == Style::Afro { CURLED_AFRO } else { CURLED };
+        let curl = settings.curl_radius * smooth(0.005, curled, along);
+        let (mut waved, mut coiled) = (Vec3::ZERO, Vec3::ZERO);
         if wave > 0.0 {
             let wave_rate = 1.0 + 0.5 * (self.rate - 1.0);
             let angle = self.wave_phase + TAU * wave_rate * along / settings.wave_length;
@@ -176,13 +180,13 @@ impl Bends {
         }
         if curl > 0.0 {
             let angle = self.curl_phase + TAU * self.rate * along / settings.curl_length;
-            curled = curl * (self.curl * math::cos(angle) * side + self.curl.abs() * math::sin(angle) * up);
+            coiled = curl * (self.curl * math::cos(angle) * side + self.curl.abs() * math::sin(angle) * up);
         }
         let [a, b] = [self.swing[0] + 25.0 * along, self.swing[1] + 41.0 * along];
         let disorder = settings.noise * share;
         let loose =
             (math::sin(a) + 0.5 * math::sin(self.swing[2] + b)) * side + math::sin(self.swing[3] + a) * up;
-        waved + curled + disorder * loose
+        waved + coiled + disorder * loose
     }
 }
 

@@ -36,7 +36,7 @@ const SPARE: f32 = 1.12;
 /// Share of the roots on the hairline itself that grow.
 const THINNEST: f32 = 0.4;
 /// Breadth of the hairline of tied hair over that of other hair: drawn tight it shows more of itself.
-const TIED_HAIRLINE: f32 = 0.7;
+const TIED_HAIRLINE: f32 = 0.25;
 
 /// A strand between guides before it is shaped.
 pub(super) struct Between {

@@ -24,8 +24,13 @@ const APART: [[f32; 2]; 2] = [[0.05, 0.02], [0.03, 0.012]];
 const STRAY: f32 = 3.5;
 /// Distance \[m\] by which strays stand off at their tips.
 const STRAY_OUT: f32 = 0.006;
-/// Share of the strands on the hairline itself that are short, and their lengths \[m\].
-const SHORT: (f32, [f32; 2]) = (0.5, [0.008, 0.035]);
+/// Length \[m\] from the root by which a strand has its waves: hair that is drawn back crosses from the start on.
+const WAVED: f32 = 0.06;
+const WAVED_TIED: f32 = 0.02;
+/// Share of the strands on the hairline itself that are short, the same of tied hair, and their lengths \[m\].
+const SHORT: f32 = 0.5;
+const SHORT_TIED: f32 = 0.2;
+const SHORT_LENGTHS: [f32; 2] = [0.008, 0.035];
 
 /// A shaped strand and its diameter \[m\].
 pub(super) struct Shaped {
@@ -145,8 +150,9 @@ impl One<'_> {
         let [own, short, shorter] = std::array::from_fn(|_| random.unit());
         let cut = self.settings.thinning * (0.6 * lock.unit() + 1.6 * own.powi(3));
         let kept = (1.0 - cut).max(0.2);
-        let [least, most] = SHORT.1;
-        let is_short = short < SHORT.0 * (1.0 - self.own.density);
+        let [least, most] = SHORT_LENGTHS;
+        let of_hairline = if self.settings.style.is_tied() { SHORT_TIED } else { SHORT };
+        let is_short = short < of_hairline * (1.0 - self.own.density);
         let left = if is_short { (least + (most - least) * shorter) / length.max(1e-3) } else { 1.0 };
         kept.min(left)
     }
@@ -177,6 +183,8 @@ fn cut(mut points: Vec<Vec3>, share: f32) -> Vec<Vec3> {
 /// A strand's own slow waves about its lock.
 struct Wisp {
     amplitude: f32,
+    /// Length \[m\] from the root by which it has them.
+    grown: f32,
     phases: [f32; 4],
     /// Angles for each metre of length.
     rates: [f32; 4],
@@ -187,13 +195,14 @@ impl Wisp {
         let phases = std::array::from_fn(|_| TAU * random.unit());
         // Waves of 4 to 8 cm: neighbours that touch part again within one of them.
         let rates = std::array::from_fn(|_| 80.0 + 77.0 * random.unit());
-        Self { amplitude: settings.frizz * size, phases, rates }
+        let grown = if settings.style.is_tied() { WAVED_TIED } else { WAVED };
+        Self { amplitude: settings.frizz * size, grown, phases, rates }
     }
 
     /// Offset \[m\] at a length along the strand \[m\].
     fn offset(&self, [side, up]: [Vec3; 2], along: f32) -> Vec3 {
         let wave = |which: usize| math::sin(self.phases[which] + self.rates[which] * along);
-        let grown = self.amplitude * smooth(0.0, 0.06, along);
+        let grown = self.amplitude * smooth(0.0, self.grown, along);
         grown * ((wave(0) + 0.5 * wave(1)) * side + (0.8 * wave(2) + 0.4 * wave(3)) * up)
     }
 }

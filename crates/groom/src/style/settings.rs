@@ -174,7 +174,7 @@ impl StyleSettings {
             wave_length: 0.12,
             noise: 0.003,
             lock_share: 0.25,
-            frizz: 0.002,
+            frizz: 0.0021,
             strays: 0.03,
             thinning: 0.15,
             ..self
@@ -266,7 +266,7 @@ impl StyleSettings {
             clump_share: 0.1,
             noise: 0.0014,
             lock_share: 0.3,
-            frizz: 0.0018,
+            frizz: 0.0023,
             strays: 0.02,
             ..self
         }
@@ -281,7 +281,7 @@ impl StyleSettings {
             clump_share: 0.1,
             noise: 0.001,
             lock_share: 0.3,
-            frizz: 0.0016,
+            frizz: 0.0018,
             strays: 0.025,
             thinning: 0.1,
             ..self

@@ -22,7 +22,7 @@ const WHORL_REACH: (f32, f32) = (0.060, 1.9);
 /// Depth \[m\] on the scalp up to which roots of hair between guides are drawn toward the hairline where all hair is tied
 /// behind the head, the share of their depth that is left on the hairline itself, and the distance \[m\] along which the
 /// depth is measured.
-const HAIRLINE_REACH: (f32, f32) = (0.080, 0.2);
+const HAIRLINE_REACH: (f32, f32) = (0.140, 0.2);
 const PROBE: f32 = 0.001;
 
 /// A strand with the inputs of its shaping.
