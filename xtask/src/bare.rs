@@ -11,7 +11,7 @@ const UNWANTED: [&str; 4] = ["wgpu", "eframe", "egui", "winit"];
 /// The words for cargo that choose it.
 const CHOICE: [&str; 3] = ["--package", "strandline-cli", "--no-default-features"];
 
-/// The packages that have features for GPUs and the window.
+/// The packages of the program that have features for GPUs and the window.
 pub const PACKAGES: [&str; 5] =
     ["strandline-gpu", "strandline-sim", "strandline-render", "strandline", "strandline-cli"];
 

@@ -1,6 +1,6 @@
 //! Lints and documentation of our crates from the dependencies that are built for the tests. `cargo clippy` and
 //! `cargo doc` check all dependencies once more, which takes as long as everything that they say of our crates. Lints
-//! without GPUs and window run here too.
+//! without GPUs and window run here too, with the features that other crates have for the whole program.
 //!
 //! Cargo calls [`compile`] in place of rustc for crates of the workspace (`RUSTC_WORKSPACE_WRAPPER`). Cargo keeps what
 //! was compiled this way apart from what rustc compiled alone: this is for a fresh checkout, as in CI.
@@ -35,8 +35,10 @@ pub fn begin() -> bool {
     // Cargo builds this program anew while it runs.
     let copy = folder.join("xtask");
     // Other versions of the tools wrote files that these do not read.
-    for made in ["out", "bare"] {
-        let _ = std::fs::remove_dir_all(folder.join(made));
+    let _ = std::fs::remove_dir_all(folder.join("out"));
+    // Crates that are not compiled again find the ones that they depend on here.
+    if libraries().is_empty() {
+        let _ = std::fs::remove_dir_all(folder.join("bare"));
     }
     let made = std::fs::create_dir_all(folder.join("out"))
         .and_then(|()| std::fs::create_dir_all(folder.join("bare")))
@@ -161,6 +163,7 @@ fn without_features(words: &[String], manifest: &str, out: &Path) -> Option<Vec<
         .filter(|line| line.contains("optional = true"))
         .filter_map(|line| line.split(" =").next())
         .collect();
+    let is_optional = |name: &str| optional.iter().any(|other| other.replace('-', "_") == name);
     let mut bare = Vec::new();
     let mut rest = elsewhere(words, out).into_iter();
     while let Some(word) = rest.next() {
@@ -173,7 +176,7 @@ fn without_features(words: &[String], manifest: &str, out: &Path) -> Option<Vec<
             continue;
         }
         let other = value.split('=').next().unwrap_or_default();
-        if word == "--extern" && optional.contains(&other.replace('_', "-").as_str()) {
+        if word == "--extern" && is_optional(other) {
             continue;
         }
         let value = if is_bare(other) { in_folder(&value, out) } else { value };

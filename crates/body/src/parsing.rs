@@ -17,9 +17,16 @@ pub(crate) type Refusal = (String, &'static str);
 /// The expectation where a file has parts with names, and none of a name: the file is not to be mended.
 pub(crate) const A_NAME: &str = "a name that is in the file";
 
+/// The expectation where a clip of a file without clips is asked for.
+pub(crate) const CLIPS: &str = "a file with clips";
+
 /// The way to mend what was refused, given that of another file.
 pub(crate) fn remedy(expected: &str, of_file: &'static str) -> &'static str {
-    if expected == A_NAME { "give one of these names" } else { of_file }
+    match expected {
+        A_NAME => "give one of these names",
+        CLIPS => "export the body again as glTF with its animation, or leave the clip out",
+        _ => of_file,
+    }
 }
 
 /// The bytes of a plain file, unless it is too large or would take more memory than may be taken.

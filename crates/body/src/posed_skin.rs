@@ -214,8 +214,8 @@ impl PosedSkin {
         (AT_LEAST * self.seen(point, triangle, squared.sqrt()).distance.max(0.0), triangle)
     }
 
-    /// A triangle about as near to a point \[m\] at the end of the step as the nearest: no more than a quarter farther. The search
-    /// begins at one near it.
+    /// A triangle at most a quarter farther from a point \[m\] at the end of the step than the nearest one. The search begins at
+    /// `before`.
     pub fn triangle_about(&self, point: Vec3, before: u32) -> u32 {
         self.search(point, before, QUICK).0
     }

@@ -7,7 +7,7 @@ use strandline_base::counted;
 
 use super::buffers::Buffers;
 use super::track::{Property, Track, Way};
-use crate::parsing::{A_NAME, Refusal};
+use crate::parsing::{A_NAME, CLIPS, Refusal};
 use crate::teleports::Teleports;
 
 /// Most names of clips that a refusal lists.
@@ -115,7 +115,7 @@ impl Clips {
 /// Says that a clip is not there.
 fn absent(name: &str, names: &[String]) -> Refusal {
     if names.is_empty() {
-        return (format!("no clip, and none named `{name}`"), "a file with clips");
+        return (format!("no clip, and none named `{name}`"), CLIPS);
     }
     let more = if names.len() > LISTED { " and more" } else { "" };
     let listed: Vec<_> = names.iter().take(LISTED).map(|name| format!("`{name}`")).collect();

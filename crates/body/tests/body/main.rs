@@ -13,6 +13,7 @@ mod obj_looks;
 mod painted;
 mod painted_file;
 mod posed_skin;
+mod sample;
 mod scans;
 mod shapes;
 mod skin_roots;

@@ -126,7 +126,7 @@ impl<'a> Obstacles<'a> {
         self.at_least_or(point, before, 0.0)
     }
 
-    /// The same; where it is no more than `enough` \[m\] it may be 0.
+    /// As [`Self::at_least`]; 0 or the bound where the bound is at most `enough` \[m\].
     pub fn at_least_or(&self, point: Vec3, before: &mut u32, enough: f32) -> f32 {
         let mut least = f32::INFINITY;
         for (collider, skin) in self.solids() {
@@ -180,8 +180,8 @@ impl<'a> Obstacles<'a> {
     }
 
     /// Mean velocity \[m/s\] over the step of the material of the nearest solid that ends at `point`, `None` without
-    /// solids. Solids with one carrier need no search for the nearest. A skin that moves by itself has that of a triangle no more
-    /// than a quarter farther than its nearest. `before` is as in [`Self::at_least`].
+    /// solids. Solids with one carrier need no search for the nearest. Of a skin that moves by itself a triangle tells it that is at
+    /// most a quarter farther than the nearest. `before` is as in [`Self::at_least`].
     pub fn nearest_velocity(&self, point: Vec3, before: &mut u32) -> Option<Vec3> {
         let first = self.colliders.first()?;
         let together = self.colliders.iter().all(|collider| collider.carrier == first.carrier);

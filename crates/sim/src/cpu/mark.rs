@@ -168,17 +168,21 @@ fn distances(grid: &Grid, obstacles: &Obstacles, cells: &[u32], enough: f32) -> 
     distances
 }
 
-/// The triangle of a skin that moves by itself about which the last wall was.
+/// Triangle of the moving skin near the last wall.
 struct Near {
     triangle: u32,
-    /// True where it was a wall of the same cell: all walls of a cell move as the material about the first.
+    /// True where that was a wall of the same cell: walls move as the material about the first where it is as near.
     is_here: bool,
+    /// Distance \[m\] within which it is.
+    reach: f32,
 }
 
 impl Near {
     /// Velocity \[m/s\] of the solid about a place; `None` without solids.
     fn velocity(&mut self, obstacles: &Obstacles, place: Vec3) -> Option<Vec3> {
-        if std::mem::replace(&mut self.is_here, true) {
+        if std::mem::replace(&mut self.is_here, true) && obstacles.are_one_moving_skin() {
+            // The other side of a gap is another part of the skin.
+            obstacles.at_least_or(place, &mut self.triangle, self.reach);
             obstacles.velocity_there(place, &mut self.triangle)
         } else {
             obstacles.nearest_velocity(place, &mut self.triangle)
@@ -202,7 +206,7 @@ fn carry_walls(volume: &mut Volume, obstacles: &Obstacles) {
         })
     };
     let around = |cells: &[u32]| {
-        let mut near = Near { triangle: PosedSkin::UNKNOWN, is_here: false };
+        let mut near = Near { triangle: PosedSkin::UNKNOWN, is_here: false, reach: 0.25 * grid.spacing() };
         let walls = cells.iter().filter_map(|&cell| -> Option<(usize, [Option<f32>; 6])> {
             let cell = cell as usize;
             near.is_here = false;

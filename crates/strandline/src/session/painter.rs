@@ -111,10 +111,7 @@ impl Painter {
     pub fn set_picture(&mut self, settings: &PictureSettings) -> Result<(), RenderError> {
         let changed = match &mut self.place {
             Place::Cpu(Some(renderer)) => renderer.set_picture(settings),
-            Place::Cpu(place @ None) => {
-                *place = Some(on_cpu(&self.strands, self.bound.as_ref(), self.mesh.as_deref(), settings)?);
-                Ok(())
-            }
+            Place::Cpu(None) => settings.validate(),
             Place::Gpu(renderer) => renderer.set_picture(settings),
         };
         if let Err(failure) = changed {
@@ -145,7 +142,9 @@ impl Painter {
         self.stands_in = self.fall_back && too_many && points.is_none();
         let report = match drawn {
             Err(failure) if self.stands_in => {
-                self.stand_in(failure)?;
+                if self.stand_in.is_none() {
+                    self.notes.push(format!("drawing on the CPU until the scene fits the GPU: {failure}"));
+                }
                 self.draw_on_cpu(input, &mut picture)
             }
             drawn => drawn,
@@ -175,7 +174,7 @@ impl Painter {
         }
     }
 
-    /// Draws on the CPU, where there is a renderer for it.
+    /// Draws on the CPU, whose renderer is made for the first picture.
     fn draw_on_cpu(&mut self, input: &FrameInput, picture: &mut Picture) -> Result<FrameReport, RenderError> {
         let place = match &mut self.place {
             Place::Cpu(renderer) => renderer,
@@ -188,16 +187,6 @@ impl Painter {
         let renderer = place.insert(made);
         renderer.show_layers(self.layers_of);
         renderer.draw_into(input, picture)
-    }
-
-    /// Creates the renderer for pictures beyond the limits of the GPU.
-    fn stand_in(&mut self, failure: RenderError) -> Result<(), RenderError> {
-        if self.stand_in.is_none() {
-            self.notes.push(format!("drawing on the CPU until the scene fits the GPU: {failure}"));
-            let made = on_cpu(&self.strands, self.bound.as_ref(), self.mesh.as_deref(), &self.settings)?;
-            self.stand_in = Some(made);
-        }
-        Ok(())
     }
 
     /// The opacity map of a light, and the depths of its first hair.
@@ -267,4 +256,25 @@ fn on_gpu(
         renderer.bind(bound.binding(), bound.solids(), solids)?;
     }
     Ok(renderer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Prepared, Scene};
+
+    #[test]
+    fn the_cpu_has_a_renderer_from_the_first_picture_on() {
+        let mut scene = Scene::demo();
+        (scene.style.strand_count, scene.groom.bound, scene.body.spacing) = (8, Some(0), 0.02);
+        let prepared = Prepared::new(&scene).unwrap();
+        let device = Opened { gpu: None, fall_back: false };
+        let mut painter = Painter::new(device, &prepared.guides, None, None, None).unwrap();
+        let small = PictureSettings { width: 16, height: 12, ..PictureSettings::default() };
+        painter.set_picture(&small).unwrap();
+        assert!(matches!(painter.place, Place::Cpu(None)) && painter.maps(0).unwrap().is_none());
+        // A size is refused before there is a renderer.
+        assert!(painter.set_picture(&PictureSettings { width: 0, ..small }).is_err());
+        assert_eq!([painter.settings.width, painter.settings.height], [16, 12]);
+    }
 }

@@ -56,7 +56,9 @@ fn clips_have_names_and_an_unknown_one_lists_them() {
     assert!(error.contains("give one of these names") && !error.contains("export"), "{error}");
     assert!(play(&rig(), "LINEAR").is_ok());
     let (_folder, path) = scratch("cube.glb", &glb(&cube_json("{}", None), &cube_bin()));
-    assert!(play(&path, "walk").unwrap_err().to_string().contains("no clip, and none named `walk`"));
+    let error = play(&path, "walk").unwrap_err().to_string();
+    assert!(error.contains("no clip, and none named `walk`"), "{error}");
+    assert!(error.contains("with its animation, or leave the clip out") && !error.contains("OBJ"), "{error}");
     let (_folder, path) = scratch("cube.obj", crate::files::CUBE_OBJ.as_bytes());
     assert!(play(&path, "walk").unwrap_err().to_string().contains("without clips"));
     let (_, _, notes) = play(&rig(), "clip 3").unwrap();
