@@ -273,7 +273,9 @@ fn walls_move_as_the_skin_about_them() {
     let mean = sum / walls as f32;
     println!("{walls} walls, {fast} of them move: {mean} m/s off, {most} m/s at most");
     assert!(walls > 100 && fast > 30, "{fast} of {walls} walls move");
-    assert!(mean < 2e-3 && most < 0.03, "{mean} m/s off, {most} m/s at most");
+    // 3.1e-5 and 2.7e-3 m/s were seen, 1.5e-4 and 1.1e-2 where the other walls of a cell take the triangle of the first from a
+    // whole cell away.
+    assert!(mean < 1e-4 && most < 6e-3, "{mean} m/s off, {most} m/s at most");
 }
 
 /// A closed tube along y of 40 cm, and guides that stand on it around its middle.

@@ -61,23 +61,21 @@ fn from_segment(point: Vec3, [start, end]: [Vec3; 2]) -> f32 {
     point.distance(start + way * share)
 }
 
-/// Places along every n-th strand, by their cells.
-#[derive(Default)]
+/// Places along every n-th strand, and cells that tell which of them are near.
 struct Places {
     /// Strand, position \[m\], and distance along the strand \[m\], in order.
     all: Vec<(usize, Vec3, f32)>,
-    cells: HashMap<IVec3, Vec<usize>>,
-}
-
-/// The cell of a position.
-fn cell(position: Vec3) -> IVec3 {
-    (position / CELL).floor().as_ivec3()
+    /// Corner of the first cell \[m\], and number of cells along each axis.
+    low: Vec3,
+    counts: IVec3,
+    /// Places of each cell.
+    cells: Vec<Vec<u32>>,
 }
 
 impl Places {
     /// Places of every n-th of the strands that are long enough to be alike.
     fn new(strands: &[Vec<Vec3>], n: usize) -> Self {
-        let mut places = Self::default();
+        let mut all = Vec::new();
         for (strand, points) in strands.iter().enumerate().step_by(n) {
             let length: f32 = points.windows(2).map(|ends| ends[0].distance(ends[1])).sum();
             if length < ALIKE {
@@ -89,17 +87,31 @@ impl Places {
                 let steps = (segment / SPACING).ceil().max(1.0);
                 for step in 0..steps as usize {
                     let share = step as f32 / steps;
-                    places.add(strand, ends[0].lerp(ends[1], share), passed + share * segment);
+                    all.push((strand, ends[0].lerp(ends[1], share), passed + share * segment));
                 }
                 passed += segment;
             }
         }
+        let low = all.iter().fold(Vec3::INFINITY, |low, (_, place, _)| low.min(*place));
+        let high = all.iter().fold(Vec3::NEG_INFINITY, |high, (_, place, _)| high.max(*place));
+        let counts = ((high - low) / CELL).floor().as_ivec3() + 1;
+        let mut places =
+            Self { all, low, counts, cells: vec![Vec::new(); counts.as_uvec3().element_product() as usize] };
+        for index in 0..places.all.len() {
+            let cell = places.cell(places.all[index].1);
+            let cell = places.index(cell);
+            places.cells[cell].push(index as u32);
+        }
         places
     }
 
-    fn add(&mut self, strand: usize, position: Vec3, along: f32) {
-        self.cells.entry(cell(position)).or_default().push(self.all.len());
-        self.all.push((strand, position, along));
+    /// The cell at a position, of which there is none where it lies outside.
+    fn cell(&self, position: Vec3) -> IVec3 {
+        ((position - self.low) / CELL).floor().as_ivec3()
+    }
+
+    fn index(&self, cell: IVec3) -> usize {
+        ((cell.z * self.counts.y + cell.y) * self.counts.x + cell.x) as usize
     }
 
     /// Other strands beside each of the places, in order.
@@ -107,21 +119,31 @@ impl Places {
         let mut beside = vec![Vec::new(); self.all.len()];
         for (strand, points) in strands.iter().enumerate() {
             for ends in points.windows(2) {
-                let low = cell(ends[0].min(ends[1]) - BESIDE);
-                let high = cell(ends[0].max(ends[1]) + BESIDE);
-                let cells = (low.x..=high.x)
-                    .flat_map(|x| (low.y..=high.y).map(move |y| (x, y)))
-                    .flat_map(|(x, y)| (low.z..=high.z).map(move |z| IVec3::new(x, y, z)));
-                for &place in cells.filter_map(|cell| self.cells.get(&cell)).flatten() {
-                    let (own, position, _) = self.all[place];
-                    let is_beside = own != strand && from_segment(position, [ends[0], ends[1]]) < BESIDE;
-                    if is_beside && beside[place].last() != Some(&strand) {
-                        beside[place].push(strand);
+                let low = self.cell(ends[0].min(ends[1]) - BESIDE).max(IVec3::ZERO);
+                let high = self.cell(ends[0].max(ends[1]) + BESIDE).min(self.counts - 1);
+                for z in low.z..=high.z {
+                    for y in low.y..=high.y {
+                        for x in low.x..=high.x {
+                            let near = &self.cells[self.index(IVec3::new(x, y, z))];
+                            self.note(near, strand, [ends[0], ends[1]], &mut beside);
+                        }
                     }
                 }
             }
         }
         beside
+    }
+
+    /// Notes the places of a cell that a segment of a strand is beside.
+    fn note(&self, near: &[u32], strand: usize, ends: [Vec3; 2], beside: &mut [Vec<usize>]) {
+        for place in near {
+            let (own, position, _) = self.all[*place as usize];
+            let found = &mut beside[*place as usize];
+            let is_beside = own != strand && from_segment(position, ends) < BESIDE;
+            if is_beside && found.last() != Some(&strand) {
+                found.push(strand);
+            }
+        }
     }
 }
 
