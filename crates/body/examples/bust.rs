@@ -104,7 +104,7 @@ fn clips(parts: &mut Parts) -> Vec<String> {
 }
 
 /// The whole file.
-pub(crate) fn bust() -> Vec<u8> {
+fn bust() -> Vec<u8> {
     let (places, corners) = skin();
     let bounds = Mannequin::new().bounds();
     let (origin, size) = (bounds.min, (bounds.max - bounds.min).max_element());
