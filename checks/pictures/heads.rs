@@ -49,7 +49,7 @@ fn views() -> [View; 3] {
     [
         // The highlight ends at the parting, which is as bright.
         bob("bob_above", Vec3::new(0.0, 1.0, 0.3), [0.07, 0.35]),
-        bob("bob_front", Vec3::new(0.0, 0.25, 1.0), [0.05, 0.55]),
+        bob("bob_front", Vec3::new(0.0, 0.25, 1.0), [0.05, 0.25]),
         // The light stands on the other side of the head, and goes through each hair at the forehead toward the eye.
         View {
             name: "braid_side",
@@ -63,7 +63,7 @@ fn views() -> [View; 3] {
             light: Vec3::new(-0.9, 1.25, 1.35),
             skin: SKIN,
             melanin: None,
-            most: [0.3, 0.55],
+            most: [0.12, 0.3],
         },
     ]
 }
@@ -149,8 +149,9 @@ fn light_views() -> [View; 2] {
 
 #[test]
 fn hair_on_a_head_is_as_bright_as_path_tracing_shows_it() {
-    // .034, .29 were seen from above, .013, .47 (5 blocks) from the front, with the noise of 200 samples a pixel. Of the braid
-    // .27, .47: a known fault of docs/gallery.md. Hair at its hairline is darker than traced since it is denser.
+    // .034, .29 were seen from above, with the noise of 200 samples a pixel. The two others fail in the long form, known faults
+    // of docs/gallery.md: .013, .47 (5 blocks) from the front, and .27, .47 of the braid, darker than traced since its hairline
+    // is denser. They keep the bounds of the time before it was (.04, .19 and .09, .23 were seen then).
     compare(&views()[..if in_full() { 3 } else { 1 }]);
 }
 

@@ -11,8 +11,8 @@ use std::process::{Command, ExitCode};
 use crate::bare;
 use crate::cargo::{compile_through, root, wrapper};
 
-/// Crates in whose loops the tests spend their time. As one unit they compile 1.4 times as long and run a quarter faster:
-/// nothing is inlined across units. That pays where all tests run once, not where somebody edits them.
+/// Crates in whose loops the tests spend their time. As one unit they compile 1.4 times as long and run up to a quarter
+/// faster: nothing is inlined across units. That pays where all tests run once, not where somebody edits them.
 const LOOPS: [&str; 3] = ["strandline_body", "strandline_sim", "strandline_render"];
 
 /// Set for the copy of this program that cargo calls.
