@@ -11,7 +11,7 @@ import os
 import socket
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import _arrays, _native, _toml, jobs
 from .errors import Error, missing
@@ -19,6 +19,9 @@ from .jobs import KEPT, Job
 from .progress import Progress
 from .samplers import grid, random, sobol
 from .scene import Scene
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future, ProcessPoolExecutor
 
 __all__ = ["KEPT", "Sweep", "grid", "key", "random", "sobol", "sweep"]
 
@@ -127,7 +130,7 @@ def plan(
 def _local(todo: list[Job], folder: str, workers: int | None, threads: int) -> Iterator[dict[str, Any]]:
     """Runs jobs in processes of this machine."""
     # With the package they would take a tenth of the time of its import.
-    from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+    from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
     from concurrent.futures.process import BrokenProcessPool
     from multiprocessing import get_context
 
@@ -142,7 +145,7 @@ def _local(todo: list[Job], folder: str, workers: int | None, threads: int) -> I
     pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"))
     try:
         # The processes begin with the first jobs.
-        waiting: set[Future[dict[str, Any]]] = {pool.submit(jobs.run, job, folder) for job in todo}
+        waiting: set[Future[dict[str, Any]]] = {_submitted(pool, job, folder) for job in todo}
         while waiting:
             finished, waiting = wait(waiting, return_when=FIRST_COMPLETED)
             for future in finished:
@@ -158,6 +161,19 @@ def _local(todo: list[Job], folder: str, workers: int | None, threads: int) -> I
             del os.environ["RAYON_NUM_THREADS"]
         else:
             os.environ["RAYON_NUM_THREADS"] = before
+
+
+def _submitted(pool: ProcessPoolExecutor, job: Job, folder: str) -> Future[dict[str, Any]]:
+    """The future row of a job."""
+    from concurrent.futures.process import BrokenProcessPool
+
+    try:
+        return pool.submit(jobs.run, job, folder)
+    except Exception as error:
+        # A pool that breaks closes its pipes, also those of a process that it begins at that moment.
+        if getattr(pool, "_broken", False):
+            raise BrokenProcessPool from error
+        raise
 
 
 #: Runs of a job on a cluster whose machine is lost meanwhile, beside the first.

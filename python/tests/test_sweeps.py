@@ -97,6 +97,37 @@ def test_a_process_that_begins_while_another_is_ended_is_not_waited_for(tmp_path
         sweep(SCENE, sweeps.grid({"style.seed": [1, 2]}), tmp_path, workers=2)
 
 
+@pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
+def test_pipes_that_a_broken_pool_closes_are_a_broken_pool(tmp_path, monkeypatch):
+    from concurrent.futures import ProcessPoolExecutor
+
+    begin = ProcessPoolExecutor._spawn_process
+
+    def begin_late(pool):
+        if pool._processes:
+            os.kill(next(iter(pool._processes)), signal.SIGKILL)
+            until = time.monotonic() + 20
+            while not pool._call_queue._reader.closed and time.monotonic() < until:
+                time.sleep(0.01)
+            raise ValueError("bad value(s) in fds_to_keep")
+        begin(pool)
+
+    monkeypatch.setattr(ProcessPoolExecutor, "_spawn_process", begin_late)
+    with pytest.raises(Error, match="the same call goes on"):
+        sweep(SCENE, sweeps.grid({"style.seed": [1, 2]}), tmp_path, workers=2)
+
+
+def test_an_error_of_a_pool_that_is_whole_is_told(tmp_path, monkeypatch):
+    from concurrent.futures import ProcessPoolExecutor
+
+    def none(pool):
+        raise OSError("no more processes")
+
+    monkeypatch.setattr(ProcessPoolExecutor, "_spawn_process", none)
+    with pytest.raises(OSError, match="no more processes"):
+        sweep(SCENE, sweeps.grid({"style.seed": [1, 2]}), tmp_path, workers=2)
+
+
 def test_draped_hair_is_one_moment(tmp_path):
     done = sweep(SCENE, [{"style.seed": 1}], tmp_path, keep=("points",), drape=True, workers=0)
     with np.load(tmp_path / done.rows[0]["file"]) as arrays:

@@ -3,7 +3,10 @@
 use std::time::Duration;
 
 use eframe::egui::{self, Key, accesskit::Role};
-use strandline::live::{LoadStage, Overlay};
+use strandline::{
+    Scene,
+    live::{LoadStage, Overlay},
+};
 
 use strandline_viewer::App;
 
@@ -78,7 +81,17 @@ fn overlays_are_chosen_by_their_names_and_have_numbers_of_the_hair() {
 
 #[test]
 fn a_load_tells_its_stage_and_shows_the_hair_before_there_is_a_picture() {
-    let mut window = Window::new();
+    let mut own = scene();
+    // A load that is done within one pass of the window, on a machine with much to do, has nothing to tell: it grows.
+    while !a_load_is_told(own.clone()) {
+        own.style.strand_count *= 4;
+        assert!(own.style.strand_count < 100_000, "never told");
+    }
+}
+
+/// True if a window told the stages of a load and showed its hair, before there was a picture.
+fn a_load_is_told(scene: Scene) -> bool {
+    let mut window = Window::on(scene);
     let (mut stages, mut seen, mut told) = (Vec::new(), false, false);
     while window.app().shown().is_none() {
         window.pass(Vec::new(), None);
@@ -92,11 +105,11 @@ fn a_load_tells_its_stage_and_shows_the_hair_before_there_is_a_picture() {
         assert!(!window.shows("open a"), "it asks for a scene while one loads");
         std::thread::sleep(Duration::from_millis(1));
     }
-    assert!(told && seen, "{stages:?}");
     assert!(
         stages.is_sorted_by_key(|stage| LoadStage::ALL.iter().position(|other| other == stage)),
         "{stages:?}"
     );
+    told && seen
 }
 
 #[test]
