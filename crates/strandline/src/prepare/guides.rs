@@ -100,6 +100,8 @@ fn tie(scene: &Scene, guides: &mut Guides) -> Vec<String> {
 /// Room of follow strands over that between the strands of a style: they fill what lies between, and are no copies beside
 /// them.
 const ROOM: f32 = 1.8;
+/// The same of hair that is tied, which runs beside its neighbours to the tie and behind it.
+const TIED_ROOM: f32 = 2.65;
 
 /// Sets the spread of drawn strands about all strands, and about the guides where these are all.
 fn set_spreads(
@@ -113,7 +115,8 @@ fn set_spreads(
     Ok(all.set_spreads(spreads)?)
 }
 
-/// Sets the spread of drawn strands of a style, and how many strands grow beside its hair.
+/// Sets the spread of drawn strands of a style, and how many strands grow beside its hair. Between the many strands of a
+/// style less room is left than between its guides.
 fn spread_grown(
     groom: &Groom,
     chosen: Option<&[usize]>,
@@ -131,8 +134,10 @@ fn spread_grown(
     let guides_beside = chosen.map_or(beside, of_chosen);
     let mut spreads = given;
     if let Some(chosen) = chosen {
-        let counts = [chosen.len() - guides_beside, count - beside];
-        spreads = Some(narrowed(spreads.unwrap_or_else(|| vec![1.0; count]), counts));
+        let share = ((chosen.len() - guides_beside) as f32 / (count - beside) as f32).sqrt();
+        let room = if guides.knots().is_empty() { ROOM } else { TIED_ROOM };
+        let given = spreads.unwrap_or_else(|| vec![1.0; count]);
+        spreads = Some(given.into_iter().map(|spread| room * share * spread).collect());
     }
     if let Some(face) = &face {
         spreads = Some(face.spreads(spreads));
@@ -140,13 +145,6 @@ fn spread_grown(
     all.set_beside(beside)?;
     guides.set_beside(guides_beside)?;
     set_spreads(chosen.is_none(), spreads, [all, guides])
-}
-
-/// Factors of the spread of drawn strands: between the many strands of a style less room is left than between its
-/// guides.
-fn narrowed(spreads: Vec<f32>, [simulated, grown]: [usize; 2]) -> Vec<f32> {
-    let share = ROOM * (simulated as f32 / grown as f32).sqrt();
-    spreads.into_iter().map(|spread| share * spread).collect()
 }
 
 /// Strands as they are simulated and drawn, which those of a file are already where they are `grown`; roots without a
