@@ -323,7 +323,7 @@ fn a_change_of_settings_waits_for_nothing_and_uploads_what_it_changes() {
 }
 
 /// Most difference \[m\] after three steps on hardware. A software adapter gives the same bits. On an H200 the two part by
-/// less than this; the cause is not known, and whether a run repeats its own bits there was not tried. Gravity of before
+/// less than this; the cause is not known, and whether a run repeats its own bits there was not tried. Earlier gravity
 /// alone would move hair by millimetres.
 const ON_HARDWARE: f32 = 1e-5;
 

@@ -125,7 +125,7 @@ law! {
             look.fibre.model = FibreModel::Chiang;
         });
         let [found, expected] = [of_look, drawn(on, own, |_| ())].map(|drawn| mean(&drawn.strands(on), |_| true));
-        // Which strands turn white is up to chance.
+        // Chance decides which strands turn white.
         assert!(apart(found, expected) < 0.1, "{found}, expected {expected}");
     }
 }

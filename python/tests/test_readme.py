@@ -1,4 +1,4 @@
-"""The README's own Python, as it is printed: six lines on its first screen, and strands of an array to USD and a picture."""
+"""Python of the README and the guide, as it is printed: six lines on the first screen, and strands of an array to USD and a picture."""
 
 import subprocess
 import sys
@@ -9,8 +9,17 @@ import pytest
 
 import strandline
 
-README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
-SHORT, WHOLE = (part.split("```")[0] for part in README.split("```python\n")[1:])
+ROOT = Path(__file__).parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def scripts(text):
+    """The Python of a document."""
+    return [part.split("```")[0] for part in text.split("```python\n")[1:]]
+
+
+(SHORT,) = scripts(README)
+(WHOLE,) = (script for script in scripts((ROOT / "docs" / "python.md").read_text(encoding="utf-8")) if "hair.usdc" in script)
 
 
 def run(folder, script):

@@ -6,7 +6,8 @@ use std::path::Path;
 use crate::cargo::root;
 
 /// Words that no comment begins with.
-const HEADLESS: [&str; 5] = ["What ", "Whether ", "Where ", "Who ", "How "];
+const HEADLESS: [&str; 8] =
+    ["What ", "Whether ", "Where ", "Who ", "How ", "Which ", "That of ", "Those of "];
 /// Words that no sentence begins with, in documents either.
 const SUBJECTS: [&str; 2] = ["What ", "Whether "];
 /// Signs before the beginning of a sentence.

@@ -70,7 +70,7 @@ pub fn run_program(words: impl IntoIterator<Item = OsString>) -> u8 {
 /// Prints clap's help, which is an error to it, or what is wrong with the command line.
 fn help(error: &clap::Error) -> u8 {
     if error.use_stderr() {
-        // It quotes what was given, and who closed standard error does not want to know.
+        // It quotes what was given. A reader that closed standard error does not want to know.
         let _ = error.print();
         return exit::USAGE as u8;
     }

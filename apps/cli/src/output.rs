@@ -35,7 +35,7 @@ pub fn finish() {
     written(stdout().flush());
 }
 
-/// When nobody reads on, who read has seen enough (`| head`): that is no error, and the run continues to its end and its
+/// A reader that ends early has seen enough (`| head`): that is no error, and the run continues to its end and its
 /// code, with nobody to print to. A full disk ends the program with an error.
 pub fn written(outcome: Result<()>) {
     match outcome {

@@ -32,7 +32,7 @@ pub struct Compare {
 }
 
 impl Compare {
-    /// That of hair which stands still at its beginning.
+    /// Comparison of hair which stands still at its beginning.
     pub fn new(live: Live) -> Self {
         let (split, camera) = (Split::Wipe, None);
         let (shown, texture) = (None, None);

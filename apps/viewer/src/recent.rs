@@ -14,7 +14,7 @@ pub struct Recent {
 }
 
 impl Recent {
-    /// Those of earlier runs of this user.
+    /// Files of earlier runs of this user.
     pub fn of_user() -> Self {
         let folder = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
         let folder = folder("XDG_STATE_HOME")

@@ -7,7 +7,7 @@ use crate::{App, controls::button};
 
 /// A part of a scene that a panel changes.
 #[derive(Clone, Copy)]
-pub enum Part {
+pub enum ScenePart {
     Motion,
     Simulation,
     Look,
@@ -19,7 +19,7 @@ pub enum Part {
     Film,
 }
 
-impl Part {
+impl ScenePart {
     /// A scene with this part of another.
     fn of(self, scene: &Scene, other: &Scene) -> Scene {
         let mut scene = scene.clone();
@@ -137,14 +137,14 @@ impl App {
     }
 
     /// Sets a part of the scene to that of another.
-    pub(crate) fn reset_part(&mut self, part: Part, to: &Scene) {
+    pub(crate) fn reset_part(&mut self, part: ScenePart, to: &Scene) {
         let scene = part.of(&self.scene, to);
         self.apply(scene);
     }
 }
 
 /// Buttons that set a panel back: to before its last change, and to the scene as it was loaded.
-pub fn resets(app: &mut App, ui: &mut Ui, part: Part) {
+pub fn resets(app: &mut App, ui: &mut Ui, part: ScenePart) {
     let before = |scene: &Scene, other: &Scene| part.of(scene, other) != *scene;
     ui.horizontal(|ui| {
         if button(ui, "before", "sets this panel back to before its last change")

@@ -1,7 +1,7 @@
 //! Hair of a page on a device that never waits, as a browser has it; a native device stands in for it.
 
 #![cfg(feature = "gpu")]
-#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+#![allow(clippy::disallowed_methods)] // compared values may be rounded
 
 use std::{thread::sleep, time::Duration};
 

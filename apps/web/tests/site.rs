@@ -1,6 +1,6 @@
 //! The page's files: the switches of "How it works", and the content policy.
 
-#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+#![allow(clippy::disallowed_methods)] // compared values may be rounded
 
 use std::{
     collections::BTreeMap,

@@ -1,6 +1,6 @@
 //! Hair of a page, without a browser.
 
-#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+#![allow(clippy::disallowed_methods)] // compared values may be rounded
 
 use glam::Vec2;
 use strandline::math::Random;

@@ -1,6 +1,6 @@
 //! Elementary functions with the same bits on every system.
 //!
-//! Those of the standard library are the system's: glibc chooses among several by the processor, and other
+//! Functions of the standard library are the system's: glibc chooses among several by the processor, and other
 //! systems round otherwise. These are those of the crate `libm`, plain Rust, off by at most about one unit in
 //! the last place. The square root is exact everywhere and stays the standard library's, as do sums, products,
 //! `floor` and the like. clippy refuses the others in every crate under `crates` (`crates/clippy.toml`), and

@@ -18,7 +18,7 @@ impl<K: PartialEq, V, const N: usize> Recent<K, V, N> {
     /// The value of a key, made by `make` unless it is one of the last that were asked for.
     ///
     /// # Errors
-    /// That of `make`; then nothing is kept.
+    /// The error of `make`; then nothing is kept.
     pub fn get<E>(&self, key: K, make: impl FnOnce() -> Result<V, E>) -> Result<Arc<V>, E> {
         if let Some(value) = self.known(&key) {
             return Ok(value);

@@ -1,4 +1,4 @@
-//! Which triangles lie within another shell.
+//! Triangles that lie within another shell.
 
 use glam::{DVec3, UVec3};
 

@@ -17,7 +17,7 @@ const COARSER: f32 = 1.4;
 /// The gradient is interpolated too, from central differences at the nodes: it is continuous, so
 /// that hair slides over the cells without a jerk, and it is made a unit vector afterwards.
 /// Outside the box the distance is a lower bound, no less than 0.7 of the true one, and continuous
-/// at the border: who looks up once may go so far without another look.
+/// at the border: after one look-up a point may go so far without another.
 #[derive(Clone)]
 pub struct DistanceGrid {
     lattice: Lattice,

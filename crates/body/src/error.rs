@@ -61,7 +61,7 @@ pub enum BodyError {
     /// A value is outside its range.
     #[error("{what} is {found}, expected {expected}")]
     Value {
-        /// Which value.
+        /// Name of the value.
         what: &'static str,
         /// Value that was given.
         found: String,

@@ -1,4 +1,4 @@
-//! Which nodes of a lattice are inside a closed surface.
+//! Nodes of a lattice that are inside a closed surface.
 
 use glam::DVec3;
 use strandline_base::par::prelude::*;

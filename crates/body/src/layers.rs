@@ -13,7 +13,7 @@ pub(crate) struct Layers<'a> {
 }
 
 impl<'a> Layers<'a> {
-    /// Those of the triangles that `order` lists.
+    /// Layers of the triangles that `order` lists.
     pub fn new(triangles: &'a [Corners], mut order: Vec<u32>) -> Self {
         order.sort_unstable_by(|one, other| {
             let low = |index: u32| low(&triangles[index as usize]);

@@ -5,7 +5,7 @@
 //! and a groom are at rest; a [`BodyFrame`] carries it into the world.
 
 #![forbid(unsafe_code)]
-#![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
+#![cfg_attr(test, allow(clippy::disallowed_methods))] // compared values may be rounded
 
 mod beside;
 mod buried;

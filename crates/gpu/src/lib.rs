@@ -5,7 +5,7 @@
 //! kit knows the names of backends and that there is no GPU.
 
 #![forbid(unsafe_code)]
-#![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
+#![cfg_attr(test, allow(clippy::disallowed_methods))] // compared values may be rounded
 
 // `mirror!` names the crate.
 extern crate self as strandline_gpu;

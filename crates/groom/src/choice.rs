@@ -1,4 +1,4 @@
-//! Which strands of a groom stand for the others: spread over the scalp, and alike in shape.
+//! Strands of a groom that stand for the others: spread over the scalp, and alike in shape.
 
 mod roots;
 

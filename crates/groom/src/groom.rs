@@ -45,7 +45,7 @@ pub struct Groom {
     pub groups: Option<Vec<u32>>,
     /// Names of the named groups.
     pub group_names: BTreeMap<u32, String>,
-    /// Which strands are guides, shape `[strand]`.
+    /// True for strands that are guides, shape `[strand]`.
     pub guide_flags: Option<Vec<bool>>,
     /// The guides that each strand follows.
     pub influences: Option<Influences>,

@@ -75,7 +75,7 @@ impl Influences {
             .zip(self.weights[range].iter().copied())
     }
 
-    /// Those of some strands, in their order, which are then the whole groom: guides that are not among them
+    /// Influences of some strands, in their order, which are then the whole groom: guides that are not among them
     /// weigh nothing.
     pub(crate) fn select(&self, strands: &[usize]) -> Self {
         let places: HashMap<usize, u32> =

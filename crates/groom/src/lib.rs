@@ -2,7 +2,7 @@
 //! renderer, and the [`RestShape`] that the solver keeps. No GPU, no time.
 
 #![forbid(unsafe_code)]
-#![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
+#![cfg_attr(test, allow(clippy::disallowed_methods))] // compared values may be rounded
 
 mod arcs;
 mod attributes;

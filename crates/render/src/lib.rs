@@ -2,7 +2,7 @@
 //! nothing of the simulation.
 
 #![forbid(unsafe_code)]
-#![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
+#![cfg_attr(test, allow(clippy::disallowed_methods))] // compared values may be rounded
 
 pub mod cpu;
 pub mod fibre;

@@ -11,7 +11,7 @@ use crate::{Model, SimError, State};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkpoint {
     /// The arrays of which the state has any, in one order.
-    pub parts: Vec<Part>,
+    pub parts: Vec<StateArray>,
     /// Body.
     pub body: BodyFrame,
     /// Time of the state \[s\].
@@ -20,7 +20,7 @@ pub struct Checkpoint {
 
 /// An array of a state; the last axis are the strands of a block.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub struct StateArray {
     /// Its name.
     pub name: &'static str,
     /// Its shape.
@@ -58,7 +58,7 @@ impl Checkpoint {
         VOLUME,
     ];
 
-    fn part(&self, name: &'static str) -> Option<&Part> {
+    fn part(&self, name: &'static str) -> Option<&StateArray> {
         self.parts.iter().find(|part| part.name == name)
     }
 
@@ -133,7 +133,7 @@ impl State {
         let mut parts = Vec::new();
         let mut add = |name, shape: &[usize], numbers: Vec<f32>| {
             if !numbers.is_empty() {
-                parts.push(Part { name, shape: shape.to_vec(), numbers });
+                parts.push(StateArray { name, shape: shape.to_vec(), numbers });
             }
         };
         for (name, lanes) in [
@@ -286,7 +286,7 @@ mod tests {
         let (model, state) = hair(StrandMethod::Constrain);
         let saved = state.checkpoint();
         let mut kept = state.clone();
-        let mut refused = |change: &dyn Fn(&mut Part)| {
+        let mut refused = |change: &dyn Fn(&mut StateArray)| {
             let mut saved = saved.clone();
             saved.parts.iter_mut().for_each(change);
             let error = kept.restore(&model, &saved).unwrap_err().to_string();

@@ -42,7 +42,7 @@ mod teleport;
 mod wind;
 mod wisps;
 
-pub use checkpoint::{Checkpoint, Part};
+pub use checkpoint::{Checkpoint, StateArray};
 pub use clock::{Clock, Ticks};
 pub use cpu::CpuRunner;
 pub use currents::{Currents, Eddy, Source};

@@ -109,7 +109,7 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// That of numbers; 0 without any.
+    /// Extent of numbers; 0 without any.
     pub(crate) fn of(numbers: Vec<f32>) -> Self {
         let sum: f64 = numbers.iter().map(|number| f64::from(*number)).sum();
         let max = numbers.iter().copied().fold(0.0, f32::max);

@@ -86,7 +86,7 @@ impl Model {
         if state.sections.len() != count {
             state.sections = self.sections(&state.body);
             state.spins = vec![Lanes::default(); count];
-            // Those of the other method, of another size.
+            // Corrections of the other method have another size.
             state.corrections.fill(Vec3Lanes::default());
         }
     }

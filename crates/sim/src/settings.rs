@@ -104,7 +104,7 @@ impl Settings {
         settings
     }
 
-    /// Files of before had the settings of constrained strands beside those of all.
+    /// Files of older versions have the settings of constrained strands beside those of all.
     fn take_moved(&mut self, given: &mut <Self as Value>::Given) {
         if let Some(packing) = given.contact.as_ref().and_then(|contact| contact.packing) {
             // A kind of hair, which is taken later, has a share of its own.

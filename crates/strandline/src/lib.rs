@@ -20,7 +20,7 @@
 //! A [`Scene`] holds everything that one run needs and is one TOML file; a [`Player`] plays it.
 
 #![forbid(unsafe_code)]
-#![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
+#![cfg_attr(test, allow(clippy::disallowed_methods))] // compared values may be rounded
 
 mod cache;
 pub mod edit;

@@ -22,7 +22,7 @@ struct Measured {
     bench: String,
     machine: Machine,
     quick: bool,
-    /// Absent in files of before it was said.
+    /// Absent in files of older versions.
     release: Option<bool>,
     gpu: Option<Gpu>,
     results: serde_json::Value,

@@ -17,7 +17,7 @@ use crate::{
     App, brushing, compare,
     controls::{button, section},
     finding, keys, looks,
-    undoing::{self, Part},
+    undoing::{self, ScenePart},
 };
 
 /// Room of a number and a name beside a slider \[point\].
@@ -30,21 +30,21 @@ pub fn show(app: &mut App, ui: &mut Ui) {
         play(app, ui);
         finding::show(app, ui);
         section(ui, "Scene", true, |ui| scene::show(app, ui));
-        panel(app, ui, "Groom", false, Part::Groom, table::groom);
-        panel(app, ui, "Body", false, Part::Body, table::body);
+        panel(app, ui, "Groom", false, ScenePart::Groom, table::groom);
+        panel(app, ui, "Body", false, ScenePart::Body, table::body);
         section(ui, "Brushes", false, |ui| brushing::panel(app, ui));
-        panel(app, ui, "Motion", true, Part::Motion, motion::show);
-        panel(app, ui, "Simulation", false, Part::Simulation, simulation::show);
-        panel(app, ui, "Look", true, Part::Look, look::show);
-        panel(app, ui, "Lights", false, Part::Lights, lights::show);
-        panel(app, ui, "Surroundings", false, Part::Surroundings, table::surroundings);
-        panel(app, ui, "Detail", false, Part::Detail, detail::show);
+        panel(app, ui, "Motion", true, ScenePart::Motion, motion::show);
+        panel(app, ui, "Simulation", false, ScenePart::Simulation, simulation::show);
+        panel(app, ui, "Look", true, ScenePart::Look, look::show);
+        panel(app, ui, "Lights", false, ScenePart::Lights, lights::show);
+        panel(app, ui, "Surroundings", false, ScenePart::Surroundings, table::surroundings);
+        panel(app, ui, "Detail", false, ScenePart::Detail, detail::show);
         section(ui, "View", false, |ui| {
             looks::views(app, ui);
             keys::list(app, ui);
             compare::controls(app, ui);
         });
-        panel(app, ui, "Film", false, Part::Film, table::film);
+        panel(app, ui, "Film", false, ScenePart::Film, table::film);
         section(ui, "Save", false, |ui| save::show(app, ui));
         section(ui, "Steps", false, |ui| undoing::show(app, ui));
         section(ui, "Window", false, window);
@@ -58,7 +58,7 @@ fn panel(
     ui: &mut Ui,
     name: &str,
     open: bool,
-    part: Part,
+    part: ScenePart,
     show: impl FnOnce(&mut App, &mut Ui),
 ) {
     section(ui, name, open, |ui| {

@@ -104,7 +104,7 @@ pub fn header(kind: Kind, shape: &[u64], least: usize) -> Vec<u8> {
 /// Reads a header through `read`, which fills the slice that it gets.
 ///
 /// # Errors
-/// Those of `read`; bytes that are no header of numbers.
+/// Errors of `read`; bytes that are no header of numbers.
 pub fn read(mut read: impl FnMut(&mut [u8]) -> Result<(), NpzError>) -> Result<Header, NpzError> {
     let mut start = [0; 8];
     read(&mut start)?;

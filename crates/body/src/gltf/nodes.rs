@@ -10,7 +10,7 @@ const DEPTH_LIMIT: usize = 64;
 
 /// The nodes of a file at rest.
 pub(super) struct Nodes<'a> {
-    /// Those of the scene that is shown, by number.
+    /// Nodes of the scene that is shown, by number.
     pub shown: Vec<Node<'a>>,
     /// All nodes, shown or not, by number.
     pub all: Vec<Node<'a>>,

@@ -1,5 +1,5 @@
 //! The body from outside: files, holes, distance grids.
-#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+#![allow(clippy::disallowed_methods)] // compared values may be rounded
 
 mod clips;
 mod closing;

@@ -28,7 +28,7 @@ impl<P: Clone> Pipelines<P> {
         self.known().len()
     }
 
-    /// That of a key, compiled at its first use.
+    /// Pipeline of a key, compiled at its first use.
     pub fn get(
         &self,
         key: String,

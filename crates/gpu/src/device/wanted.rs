@@ -7,7 +7,7 @@ pub enum Wanted {
     Hardware,
     /// The first of any kind, hardware before software.
     Any,
-    /// That of a number in [`crate::Gpu::list`].
+    /// The device of this number in [`crate::Gpu::list`].
     Number(usize),
 }
 

@@ -1,4 +1,4 @@
-//! Which guides a strand follows, and how much.
+//! Guides that a strand follows, and how much.
 
 use crate::{LANES, block_count};
 

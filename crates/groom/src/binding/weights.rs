@@ -1,4 +1,4 @@
-//! Which guides a strand follows, and how much it follows each.
+//! Guides that a strand follows, and how much it follows each.
 
 use super::influence::MOST_INFLUENCES;
 use crate::{

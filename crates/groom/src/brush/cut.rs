@@ -5,12 +5,12 @@ use glam::Vec3;
 use crate::{Groom, Widths};
 
 /// A point of the cut groom: a point of the whole one, and the share of the way to the next.
-type Place = (usize, f32);
+type CutPoint = (usize, f32);
 
 /// Cuts strands to a length \[m\], by a share of what is longer. A strand keeps two points at least, and its points up to
 /// the cut keep their bits.
 pub(super) fn cut(groom: &mut Groom, strands: &[usize], strength: f32, length: f32) {
-    let mut places: Vec<Place> = Vec::with_capacity(groom.points.len());
+    let mut places: Vec<CutPoint> = Vec::with_capacity(groom.points.len());
     let mut starts = vec![0];
     let mut reached = strands.iter().peekable();
     for strand in 0..groom.strand_count() {
@@ -39,7 +39,7 @@ pub(super) fn cut(groom: &mut Groom, strands: &[usize], strength: f32, length: f
 }
 
 /// Places of a strand's points up to the cut.
-fn kept(points: &[Vec3], strength: f32, length: f32) -> impl Iterator<Item = Place> {
+fn kept(points: &[Vec3], strength: f32, length: f32) -> impl Iterator<Item = CutPoint> {
     let whole: f32 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
     let left = if whole > length { whole - strength * (whole - length) } else { whole };
     let mut passed = 0.0;
@@ -65,8 +65,8 @@ fn kept(points: &[Vec3], strength: f32, length: f32) -> impl Iterator<Item = Pla
         .chain((share > 0.0).then_some((last, share)))
 }
 
-fn along<T: Copy>(values: &[T], places: &[Place], mix: impl Fn(T, T, f32) -> T) -> Vec<T> {
-    let at = |(point, share): &Place| match *share > 0.0 {
+fn along<T: Copy>(values: &[T], places: &[CutPoint], mix: impl Fn(T, T, f32) -> T) -> Vec<T> {
+    let at = |(point, share): &CutPoint| match *share > 0.0 {
         true => mix(values[*point], values[point + 1], *share),
         false => values[*point],
     };

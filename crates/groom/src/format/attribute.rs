@@ -23,7 +23,7 @@ pub enum Attribute {
     Groups,
     /// Their names.
     GroupNames,
-    /// Which strands are guides.
+    /// Marks of the strands that are guides.
     GuideFlags,
     /// The guides that strands follow.
     Influences,

@@ -41,7 +41,7 @@ const PARTED_ABOVE: f32 = 0.045;
 
 /// End of a strand while it is combed.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct StrandEnd {
     /// Place \[m\].
     pub point: Vec3,
     /// Distance \[m\] from the skin.
@@ -52,7 +52,7 @@ pub struct Place {
     pub passed: f32,
 }
 
-impl Place {
+impl StrandEnd {
     /// The part of a direction that runs along the skin, of length 1.
     fn along(&self, direction: Vec3) -> Vec3 {
         (direction - self.out * direction.dot(self.out)).normalize_or_zero()
@@ -107,7 +107,7 @@ impl Combed {
     }
 
     /// Direction at a place on or above the skin.
-    pub fn direction(&self, settings: &StyleSettings, place: Place) -> Vec3 {
+    pub fn direction(&self, settings: &StyleSettings, place: StrandEnd) -> Vec3 {
         if self.is_fringe() {
             return self.over_forehead(place);
         }
@@ -128,13 +128,13 @@ impl Combed {
     }
 
     /// Forward over the hairline, then down.
-    fn over_forehead(&self, place: Place) -> Vec3 {
+    fn over_forehead(&self, place: StrandEnd) -> Vec3 {
         let forward = place.along(Vec3::new(4.0 * self.root.position.x, -0.4, 1.0));
         forward.lerp(Vec3::new(0.0, -1.0, -0.12), smooth(0.066, 0.040, place.point.y))
     }
 
     /// Along the skin to the tie; over the ear, not across it.
-    fn gathered(&self, place: Place) -> Vec3 {
+    fn gathered(&self, place: StrandEnd) -> Vec3 {
         let way = (self.tie() - place.point).normalize_or_zero();
         let before_ear = smooth(-0.03, 0.005, place.point.z) * smooth(0.030, 0.005, place.point.y);
         let over_ear = Vec3::new(0.0, 1.4 * before_ear, -0.3 * before_ear);
@@ -151,7 +151,7 @@ impl Combed {
     }
 
     /// About the tie in a ring: each strand at its own place across it.
-    fn wound(&self, place: Place) -> Vec3 {
+    fn wound(&self, place: StrandEnd) -> Vec3 {
         let aside = place.point - BUN.0;
         let depth = aside.dot(BUN.1);
         let radial = aside - BUN.1 * depth;
@@ -161,7 +161,7 @@ impl Combed {
     }
 
     /// Down from the tie as one of three tresses that cross each other in turn.
-    fn plaited(&self, settings: &StyleSettings, place: Place) -> Vec3 {
+    fn plaited(&self, settings: &StyleSettings, place: StrandEnd) -> Vec3 {
         let tress =
             if self.root.position.x.abs() < 0.022 { 1.0 } else { 1.0 + self.root.position.x.signum() };
         let below = (TIE.y - place.point.y + AHEAD).max(0.0);
@@ -177,7 +177,7 @@ impl Combed {
     }
 
     /// Outward from the whorl, turned by the swirl; over the forehead to the side.
-    fn off_whorl(&self, settings: &StyleSettings, place: Place) -> Vec3 {
+    fn off_whorl(&self, settings: &StyleSettings, place: StrandEnd) -> Vec3 {
         let turn = math::rotation(WHORL.normalize(), settings.swirl);
         let away = place.along(turn * (self.root.position - WHORL));
         let ahead = smooth(0.02, 0.07, self.root.position.z) * smooth(-0.02, 0.05, self.root.position.y);
@@ -186,7 +186,7 @@ impl Combed {
     }
 
     /// Away from the parting over the skull, then down beside the face.
-    fn falling(&self, settings: &StyleSettings, place: Place) -> Vec3 {
+    fn falling(&self, settings: &StyleSettings, place: StrandEnd) -> Vec3 {
         let point = place.point;
         let on_top = smooth(PARTED_ABOVE - 0.03, PARTED_ABOVE + 0.04, point.y);
         // The parting runs from the forehead to the whorl; behind it hair falls to the back.
@@ -208,7 +208,7 @@ impl Combed {
     }
 
     /// Along the skin to the place behind the ear; over the ear, not across it.
-    fn way_to_ear(&self, place: Place) -> Vec3 {
+    fn way_to_ear(&self, place: StrandEnd) -> Vec3 {
         let way = BEHIND_EAR * Vec3::new(self.side, 1.0, 1.0) - place.point;
         let before_ear = smooth(-0.03, 0.005, place.point.z) * smooth(0.030, 0.008, place.point.y);
         place.along(way.normalize_or_zero() + Vec3::new(0.0, 1.4 * before_ear, -0.3 * before_ear))
@@ -240,7 +240,7 @@ impl Combed {
     }
 
     /// Hair that rests on the shoulder slides off it to the front or the back, not outward.
-    fn off_shoulder(&self, place: Place) -> Vec3 {
+    fn off_shoulder(&self, place: StrandEnd) -> Vec3 {
         let inward = -0.25 * place.point.x.signum() * smooth(0.07, 0.13, place.point.x.abs());
         place.along(Vec3::new(inward, -0.45, 0.9 * self.curtain))
     }

@@ -8,7 +8,7 @@ use strandline_base::memory::{self, Need};
 use strandline_base::par::prelude::*;
 use strandline_body::{Mannequin, Random, Root, SignedDistance};
 
-use super::comb::{Combed, Place, TIE_RADIUS, fringe_end, smooth};
+use super::comb::{Combed, StrandEnd, TIE_RADIUS, fringe_end, smooth};
 use super::face;
 use super::hair;
 use super::locks::{self, Shaped};
@@ -166,7 +166,7 @@ fn march(settings: &StyleSettings, skin: &Skin, index: usize, root: Root) -> Str
     let mut above = covered(settings, point, skin.mannequin().distance_and_gradient(point));
     for step in 1..=steps {
         let (distance, out) = above;
-        let place = Place { point, distance, out, passed: passed_tie };
+        let place = StrandEnd { point, distance, out, passed: passed_tie };
         let wanted = combed.direction(settings, place).normalize_or(Vec3::NEG_Y);
         let kept = if combed.tied && settings.style != Style::Ponytail { WOUND } else { STIFFNESS };
         direction = (direction * kept + wanted * (1.0 - kept)).normalize_or(wanted);
@@ -200,7 +200,7 @@ fn march(settings: &StyleSettings, skin: &Skin, index: usize, root: Root) -> Str
 /// Direction in which a strand leaves the skin.
 fn leaving(settings: &StyleSettings, combed: &Combed) -> Vec3 {
     let normal = combed.root.normal;
-    let place = Place { point: combed.root.position, distance: 0.0, out: normal, passed: 0.0 };
+    let place = StrandEnd { point: combed.root.position, distance: 0.0, out: normal, passed: 0.0 };
     let flow = combed.direction(settings, place).normalize_or(normal);
     let lift = if settings.style.is_tied() { 0.25 } else { 0.6 };
     // Beside the parting hair rises before it falls to its side, which hides the skin.

@@ -29,7 +29,7 @@ const RADIUS: f32 = 5e-5;
 const BEFORE: f32 = 0.16;
 
 /// A lash: its eye, its lid, and its place in the row, from -1 to 1.
-struct Place {
+struct Lash {
     side: f32,
     lid: usize,
     across: f32,
@@ -67,18 +67,18 @@ pub(super) fn strand(settings: &StyleSettings, skin: &Skin, index: usize) -> Str
 }
 
 /// The place of a lash: rows are filled evenly, a little out of order.
-fn place(lash: usize, random: &mut Random) -> Place {
+fn place(lash: usize, random: &mut Random) -> Lash {
     let side = if lash.is_multiple_of(2) { 1.0 } else { -1.0 };
     // The first few reach from end to end of both lids.
     let of_eye = lash / 2 * STRIDE % (COUNTS[0] + COUNTS[1]);
     let (lid, index) = if of_eye < COUNTS[0] { (0, of_eye) } else { (1, of_eye - COUNTS[0]) };
     let share = (index as f32 + 0.5 + 0.45 * random.signed()) / COUNTS[lid] as f32;
     let [inner, outer] = ROWS[lid];
-    Place { side, lid, across: inner + (outer - inner) * share }
+    Lash { side, lid, across: inner + (outer - inner) * share }
 }
 
 /// The root of a lash on the margin of its lid, and the pitch \[rad\] of the lid there: it turns about the eyeball.
-fn root(skin: &Skin, place: &Place, aside: Vec2, random: &mut Random) -> (Root, f32) {
+fn root(skin: &Skin, place: &Lash, aside: Vec2, random: &mut Random) -> (Root, f32) {
     let mannequin = skin.mannequin();
     let margin = mannequin.lid_margin(place.across, place.lid == 0);
     let away = OFF_MARGIN + ROW_WIDTH * random.unit();

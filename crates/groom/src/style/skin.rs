@@ -29,7 +29,7 @@ pub struct Skin {
 }
 
 impl Skin {
-    /// That of the built-in head.
+    /// Skin of the built-in head.
     pub fn new(mannequin: Arc<Mannequin>) -> Self {
         let bounds = mannequin.bounds();
         let low = (bounds.min - ROOM).with_x(0.0);

@@ -1,5 +1,5 @@
 //! Bound strands of real grooms, and the cost of a hundred thousand of them.
-#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+#![allow(clippy::disallowed_methods)] // compared values may be rounded
 
 use std::time::Instant;
 

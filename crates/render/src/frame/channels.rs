@@ -16,7 +16,7 @@ pub(crate) struct Known {
     pub bodies: Vec<f32>,
     /// Displacement \[pixel\] of the hair since the picture before times the share that it covers.
     pub motions: Vec<Vec4>,
-    /// That of the body, 0 where there is none.
+    /// Motion of the body, 0 where there is none.
     pub body_motions: Vec<Vec2>,
     /// Number of the nearest strand, from 1, 0 where there is none.
     pub strands: Vec<f32>,

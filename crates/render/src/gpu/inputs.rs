@@ -178,7 +178,7 @@ mirror! {
         /// Square of the distance to the target \[m^2\].
         pub axis_square: f32,
         pub radiance: [f32; 3],
-        /// Which shadow light it is, [`NO_MAP`] for none.
+        /// Number among the lights with shadows, [`NO_MAP`] for none.
         pub slot: u32,
         pub right: [f32; 3],
         /// Greatest coordinate on the plane that the light reaches.

@@ -253,7 +253,7 @@ impl Lattice {
         self.albedos().fold(Vec4::ZERO, Vec4::max)
     }
 
-    /// That of each kind of hair.
+    /// Albedo of each kind of hair.
     pub fn albedos(&self) -> impl Iterator<Item = Vec4> {
         self.ends.iter().map(|end| end.albedo)
     }

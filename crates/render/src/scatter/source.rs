@@ -19,12 +19,12 @@ pub struct OwnColors {
 }
 
 impl OwnColors {
-    /// Those of guides, where they have some.
+    /// Colours of guides, where they have some.
     pub fn of(guides: &Guides) -> Option<Self> {
         Self::of_points(guides.colors()?)
     }
 
-    /// Those of points, shape `[point]`, linear RGB; none where there are no points.
+    /// Colours of points, shape `[point]`, linear RGB; none where there are no points.
     pub fn of_points(colors: &[[f32; 3]]) -> Option<Self> {
         let all = || colors.iter().map(|&color| Vec3::from(color));
         let sum: DVec3 = all().map(|color| color.as_dvec3()).sum();

@@ -215,7 +215,7 @@ impl ShadowMap {
 pub struct Shadows {
     /// One for each light, in their order; lights without shadow have an unused one.
     pub(crate) maps: Vec<ShadowMap>,
-    /// Which lights cast shadows.
+    /// Lights that cast shadows.
     pub(crate) casts: Vec<bool>,
 }
 

@@ -118,8 +118,8 @@ fn classify(volume: &mut Volume, obstacles: &Obstacles, known: Option<Vec<f32>>)
     }
 }
 
-/// Those of some cells in order whose middles lie inside a skin that moves by itself, where that is the only solid: one
-/// search for the cells of a row, one for each cell where the skin has a hole.
+/// Cells, of some in order, whose middles lie inside a skin that moves by itself, where that is the only solid: one search
+/// for the cells of a row, one for each cell where the skin has a hole.
 fn inside_skin(grid: &Grid, obstacles: &Obstacles, cells: &[u32]) -> Option<Vec<u32>> {
     if !obstacles.are_one_moving_skin() {
         return None;

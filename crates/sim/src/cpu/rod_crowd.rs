@@ -26,7 +26,7 @@ const SLIPS: f32 = 5e-3;
 pub(crate) struct Crowd {
     pub(super) rooms: Vec<Room>,
     points: usize,
-    /// Places where a part begins, and motions from there at the velocities of before and as found \[m\], world space, shape
+    /// Places where a part begins, and motions from there at the earlier velocities and as found \[m\], world space, shape
     /// `[block][point]` of lanes.
     start: Vec<Vec3Lanes>,
     coast: Vec<Vec3Lanes>,

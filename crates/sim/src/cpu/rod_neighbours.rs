@@ -77,7 +77,7 @@ struct Motion {
 }
 
 impl Motion {
-    /// That of all blocks: in one order, whatever the threads.
+    /// Motion of all blocks: in one order, whatever the threads.
     fn of_all(blocks: &[Self]) -> Self {
         let nothing = Self { stays: true, ways: 0.0 };
         blocks

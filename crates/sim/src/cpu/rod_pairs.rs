@@ -6,7 +6,7 @@ use strandline_groom::LANES;
 
 use super::rod_strands::Hair;
 use crate::wisps::pair::{Near, Pair};
-use crate::wisps::place::{Ends, NEAR, Place, between, least_distance, look, nearest};
+use crate::wisps::place::{Approach, Ends, NEAR, between, least_distance, look, nearest};
 
 /// Stiffness with which a round holds a place over its mass and the square of the part.
 const HELD: f32 = 1.0;
@@ -20,7 +20,7 @@ const CHUNK: usize = 2048;
 #[derive(Clone, Copy, Default)]
 #[repr(align(32))]
 pub(super) struct Point {
-    /// Place \[m\] where the part begins, and way at the velocity of before \[m\].
+    /// Place \[m\] where the part begins, and way at the earlier velocity \[m\].
     pub(super) start: Vec3,
     pub(super) coast: Vec3,
 }
@@ -86,7 +86,7 @@ impl<'a> Look<'a> {
         Self { hair, points, pairs, time_step: hair.parts.time_step as f32 }
     }
 
-    /// Index of the first pair of before that is not below two segments.
+    /// Index of the first earlier pair that is not below two segments.
     pub(super) fn known_from(&self, segments: [u32; 2]) -> usize {
         self.pairs.partition_point(|pair| pair.segments < segments)
     }
@@ -116,7 +116,7 @@ impl<'a> Look<'a> {
         segments: [u32; 2],
         places: [(usize, usize); 2],
         touch: f32,
-        place: &Place,
+        place: &Approach,
         pair: Option<&Pair>,
     ) -> Near {
         let inverse = |side: usize| {

@@ -58,12 +58,12 @@ impl Strands<'_> {
 
 /// Motion of strands in a part of a step.
 struct Motion {
-    /// Squares of the longest way \[m\], of its longest difference from that at the velocity of before, and of the
-    /// largest speed of before \[m/s\].
+    /// Squares of the longest way \[m\], of its longest difference from that at the earlier velocity, and of the
+    /// largest earlier speed \[m/s\].
     largest: f32x8,
     change: f32x8,
     speed: f32x8,
-    /// Squares of the largest turn \[rad\], and of its largest difference from that at the spin of before.
+    /// Squares of the largest turn \[rad\], and of its largest difference from that at the earlier spin.
     turn: f32x8,
     turn_change: f32x8,
     /// Length of the longest segment and of all \[m\].
@@ -106,7 +106,7 @@ struct Thresholds {
     /// Way \[m\] of a strand that a solid presses, and of one that nothing presses.
     pressed: f64,
     loose: f32x8,
-    /// Difference \[m\] of the way from that at the velocity of before, of the latter and of the former.
+    /// Difference \[m\] of the way from that at the earlier velocity, of a loose strand and of a pressed one.
     steady: f32x8,
     pressed_steady: f64,
 }

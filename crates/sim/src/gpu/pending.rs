@@ -8,7 +8,7 @@ use strandline_gpu::{Buffer, Gpu, GpuError, Readback, Slot, Timer, Transfer};
 use super::buffers::REPORTS;
 use super::records::Report;
 
-/// Most copies on their way: who makes more steps than these report waits for the oldest.
+/// Most copies on their way: a caller that makes more steps than these report waits for the oldest.
 const ON_WAY: usize = 32;
 
 pub(super) struct Pending {

@@ -30,7 +30,7 @@ pub struct GpuRunner {
     /// Segments of strands that can stretch.
     segment_count: usize,
     pub(super) buffers: Buffers,
-    /// Which of the two buffers of positions is the newer.
+    /// Index of the newer of the two buffers of positions.
     pub(super) side: usize,
     /// The stages bound to the buffers, in order, for both sides; `None` after a change.
     pub(super) bound: Option<[Vec<(Stage, Dispatches)>; 2]>,
@@ -55,7 +55,7 @@ pub struct GpuRunner {
 pub struct Costs {
     /// Kernels started.
     pub dispatches: usize,
-    /// Those of the pressure solve among them.
+    /// Dispatches of the pressure solve among them.
     pub solve_dispatches: usize,
     /// Bytes that the kernels without the solve's rounds must move at least: every number that they
     /// read or write, once for each kernel.

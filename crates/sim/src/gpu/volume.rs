@@ -27,7 +27,7 @@ mirror! {
 }
 
 impl GridState {
-    /// That of a box which has not found the hair yet.
+    /// State of a box which has not found the hair yet.
     fn start(grid: &Grid) -> Self {
         Self {
             origin: [-1.0; 3],

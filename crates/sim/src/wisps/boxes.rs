@@ -51,7 +51,7 @@ pub struct Boxes {
 pub struct Met {
     /// Their numbers, the lower one first.
     pub segments: [u32; 2],
-    /// Distance \[m\] that the one who looks for pairs gives them.
+    /// Distance \[m\] that the search for pairs gives them.
     pub distance: f32,
 }
 

@@ -49,7 +49,7 @@ pub fn least_distance([a, b, c, d]: &Ends, distance: f32) -> f32 {
 
 /// Plane of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct Approach {
     /// Shares of both segments.
     pub shares: [f32; 2],
     /// Unit vector from the second segment to the first, on the side where they belong.
@@ -60,14 +60,14 @@ pub struct Place {
 
 /// Place where two segments touch, or may come to touch within a part of a step, at a distance `touch` \[m\] of their
 /// axes; none where they stay apart. `start` are their ends at the beginning of the part and `shares` where these are
-/// nearest, `ways` the motion that is expected; `side` is the normal of before.
+/// nearest, `ways` the motion that is expected; `side` is the normal of the last round.
 pub fn look(
     start: &Ends,
     ways: &Ends,
     touch: f32,
     shares: [f32; 2],
     side: impl FnOnce() -> Option<Vec3>,
-) -> Option<Place> {
+) -> Option<Approach> {
     let vector = between(start, shares);
     let distance = vector.length();
     if !distance.is_finite() {
@@ -82,14 +82,14 @@ pub fn look(
         }
         if distance < touch {
             let normal = oriented(start, vector, distance, touch, side);
-            return Some(Place { shares, normal, gap: normal.dot(vector) });
+            return Some(Approach { shares, normal, gap: normal.dot(vector) });
         }
     }
     ahead(start, ways, touch, shares, distance)
 }
 
 /// The place of two segments that begin apart.
-fn ahead(start: &Ends, ways: &Ends, touch: f32, shares: [f32; 2], distance: f32) -> Option<Place> {
+fn ahead(start: &Ends, ways: &Ends, touch: f32, shares: [f32; 2], distance: f32) -> Option<Approach> {
     let fastest = [(0, 2), (0, 3), (1, 2), (1, 3)]
         .into_iter()
         .fold(0.0_f32, |most, (one, other)| most.max((ways[one] - ways[other]).length_squared()))
@@ -113,7 +113,7 @@ fn ahead(start: &Ends, ways: &Ends, touch: f32, shares: [f32; 2], distance: f32)
         return None;
     }
     let normal = if distance > 1e-9 { vector / distance } else { crosswise(start).unwrap_or(Vec3::X) };
-    Some(Place { shares, normal, gap: normal.dot(between(start, shares)) })
+    Some(Approach { shares, normal, gap: normal.dot(between(start, shares)) })
 }
 
 /// The normal of a pair that touches, on its side.
@@ -137,7 +137,7 @@ fn crosswise([a, b, c, d]: &Ends) -> Option<Vec3> {
 mod tests {
     use super::*;
 
-    fn look(start: &Ends, ways: &Ends, touch: f32, side: impl FnOnce() -> Option<Vec3>) -> Option<Place> {
+    fn look(start: &Ends, ways: &Ends, touch: f32, side: impl FnOnce() -> Option<Vec3>) -> Option<Approach> {
         super::look(start, ways, touch, nearest(start), side)
     }
 

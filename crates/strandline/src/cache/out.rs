@@ -22,7 +22,7 @@ use crate::{Error, Scene, body::BodyFrame, groom::Vec3Lanes, sim::StepReport, sn
 pub struct OutSettings {
     /// The file: `.npz` is a moving cache, `.usda` text USD; a name with `%04d` in it a file for every frame.
     pub path: PathBuf,
-    /// Which strands.
+    /// Strands that are written.
     pub what: What,
     /// Every n-th frame, from the first.
     pub every: u32,

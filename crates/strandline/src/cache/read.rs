@@ -102,7 +102,7 @@ impl Cache {
         &self.frames.times
     }
 
-    /// Which strands it holds.
+    /// Strands that it holds.
     pub fn what(&self) -> What {
         self.frames.meta.what
     }

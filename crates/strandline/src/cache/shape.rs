@@ -13,7 +13,7 @@ use crate::{
 };
 
 choices! {
-    /// Which strands are written.
+    /// Strands that are written.
     pub enum What as "what" {
         /// Those that are simulated.
         Guides = "guides",
@@ -48,7 +48,7 @@ pub(crate) struct Attributes {
     /// The group of each strand, shape `[strand]`, and the groups' names.
     pub groups: Option<Vec<u16>>,
     pub group_names: Vec<String>,
-    /// Which strands are guides, shape `[strand]`, where others hang on them.
+    /// True for strands that are guides, shape `[strand]`, where others hang on them.
     pub guide_flags: Option<Vec<bool>>,
     /// The strands that guides carry.
     pub binding: Option<Binding>,

@@ -63,7 +63,7 @@ fn collect(table: &Table, section: &str, all: &mut Vec<Found>) {
 pub struct Values(Value);
 
 impl Values {
-    /// Those of a scene.
+    /// Values of a scene.
     pub fn of(scene: &Scene) -> Self {
         Self(Value::Table(toml::Table::try_from(scene).unwrap_or_default()))
     }
@@ -118,7 +118,7 @@ pub(super) fn table_of<'a>(
 pub(super) fn changed(scene: &Scene, table: &toml::Table, key: &str) -> Result<Scene, Error> {
     let mut changed = Scene::parse(&toml::to_string(table).unwrap_or_default(), key)?;
     (changed.folder, changed.given) = (scene.folder.clone(), scene.given);
-    // Those of a file that is named no longer go with it.
+    // Surroundings of a file that is named no longer go with it.
     if scene.surroundings.file.is_none() || changed.surroundings.file.is_some() {
         changed.look.surroundings.clone_from(&scene.look.surroundings);
     }

@@ -72,7 +72,7 @@ pub struct Shown {
     pub frame: u64,
     /// Commands that were received before it was drawn: see [`Live::send`](crate::Live::send).
     pub drawn_after_command: u64,
-    /// Those of them that came before the step it shows: a picture behind, since the next step is made while
+    /// Number of commands that came before the step it shows: a picture behind, since the next step is made while
     /// one is drawn.
     pub simulated_after_command: u64,
     /// True where it is simpler than it was asked to be.

@@ -27,7 +27,7 @@ const MOST_QUICK: i32 = 768;
 /// Time \[s\] without events after which hair that stands still is drawn in full.
 const MOMENT: Duration = Duration::from_millis(200);
 
-/// Which simpler pictures are drawn: the same ones again when hair that rested moves.
+/// Simpler pictures that are drawn: the same ones again when hair that rested moves.
 pub(super) struct Drafts {
     pub now: Draft,
     /// Number of the last that took too long, or, below 0, were quick; the least time \[s\] of those, or the most of these.

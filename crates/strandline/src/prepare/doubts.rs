@@ -26,12 +26,12 @@ const NEAR_SIZE: std::ops::Range<f32> = 0.4..2.5;
 
 /// A part of the place of a groom, which settings decide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Part {
+pub(super) enum Unsure {
     Axes,
     Unit,
 }
 
-impl Part {
+impl Unsure {
     /// True where a scene leaves it open.
     fn is_open(self, scene: &Scene) -> bool {
         let groom = &scene.groom;
@@ -60,7 +60,7 @@ pub(super) struct Doubt {
     /// The property, human-readable.
     words: String,
     /// The part of the place that it speaks against.
-    part: Part,
+    part: Unsure,
 }
 
 impl Doubt {
@@ -78,17 +78,17 @@ pub(super) fn doubts(hair: &Hair, head: &Head) -> Vec<Doubt> {
     let mut doubt = |words: String, part| doubts.push(Doubt { words, part });
     let length = hair.length();
     if length > LONGEST * skull.size.x {
-        doubt(format!("the strands are {length:.1} m long in the mean"), Part::Unit);
+        doubt(format!("the strands are {length:.1} m long in the mean"), Unsure::Unit);
     }
     if !hair.is_full(Some(skull.center())) {
         return doubts;
     }
     if hair.hangs() < STANDS && hair.high(skull) < LOW {
-        doubt("the strands lead up from roots below the middle of the head".to_owned(), Part::Axes);
+        doubt("the strands lead up from roots below the middle of the head".to_owned(), Unsure::Axes);
     }
     let on_face = hair.on_face(skull);
     if head.pose.shows_front && on_face > ON_FACE {
-        doubt(format!("{:.0} % of the roots lie on the face", 100.0 * on_face), Part::Axes);
+        doubt(format!("{:.0} % of the roots lie on the face", 100.0 * on_face), Unsure::Axes);
     }
     doubts
 }
@@ -98,7 +98,7 @@ pub(super) fn doubts(hair: &Hair, head: &Head) -> Vec<Doubt> {
 pub(super) fn refusal(scene: &Scene, placings: &Placings, doubts: &[Doubt]) -> Option<String> {
     let placing = &placings.groom;
     if let Some(rival) = placings.rival {
-        let part = if placing.is_turned_from(&rival) { Part::Axes } else { Part::Unit };
+        let part = if placing.is_turned_from(&rival) { Unsure::Axes } else { Unsure::Unit };
         if part.is_open(scene) {
             let [one, other] = [flags(placing, &rival), flags(&rival, placing)];
             return Some(format!(
@@ -107,23 +107,23 @@ pub(super) fn refusal(scene: &Scene, placings: &Placings, doubts: &[Doubt]) -> O
             ));
         }
     }
-    let is_open = |part: Part| part.is_open(scene) && !(placings.is_foreign && part == Part::Unit);
+    let is_open = |part: Unsure| part.is_open(scene) && !(placings.is_foreign && part == Unsure::Unit);
     if let Some(doubt) = doubts.iter().find(|doubt| is_open(doubt.part)) {
         return Some(format!("{}, unlike hair of a head; {}", doubt.words, doubt.part.kept(placing)));
     }
-    let is_open = Part::Axes.is_open(scene) && has_open_ends(scene);
+    let is_open = Unsure::Axes.is_open(scene) && has_open_ends(scene);
     let is_lost = placings.is_foreign && placings.confidence < LOST && is_open;
     is_lost.then(|| {
         format!(
             "it lies on this head in no axes as hair does; {}, and `--root-end` gives the end of the roots",
-            Part::Axes.kept(placing)
+            Unsure::Axes.kept(placing)
         )
     })
 }
 
 /// The reason to refuse a groom that lies away from its body, given how: none where a setting of its place is given.
 pub(super) fn refusal_away(scene: &Scene, placing: &Placing, apart: &str) -> Option<String> {
-    let is_open = Part::Axes.is_open(scene) && Part::Unit.is_open(scene) && has_open_ends(scene);
+    let is_open = Unsure::Axes.is_open(scene) && Unsure::Unit.is_open(scene) && has_open_ends(scene);
     (is_open && scene.groom.translation == Vec3::ZERO).then(|| {
         format!(
             "no axes and no unit bring it to the skin: {apart}. `--scale {}` alone (`groom.scale`) keeps it there",

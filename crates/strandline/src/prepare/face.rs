@@ -14,7 +14,7 @@ pub(super) struct Face {
 }
 
 impl Face {
-    /// That of a groom as a style grows it; `None` where it has none.
+    /// Hair of the face of a groom as a style grows it; `None` where it has none.
     pub fn of(groom: &Groom) -> Option<Self> {
         let named = |number: &u32| {
             let part = groom.group_names.get(number)?.parse::<Style>().ok();

@@ -39,7 +39,7 @@ pub(super) struct Skull {
 }
 
 impl Skull {
-    /// That of the built-in head, which takes a fifth of a second to make.
+    /// Measures of the built-in head, which takes a fifth of a second to make.
     pub const BUILT_IN: Self = Self {
         top: 0.10466226,
         size: Vec2::new(0.15351063, 0.19609678),
@@ -51,7 +51,7 @@ impl Skull {
         Vec3::new(self.middle.x, self.top - WIDEST * 0.5 * self.size.element_sum(), self.middle.y)
     }
 
-    /// That of the highest part of a body, given its vertices, or of a head, given the roots of its hair \[m\]. It stands
+    /// Measures of the highest part of a body, given its vertices, or of a head, given the roots of its hair \[m\]. It stands
     /// upright and looks along z.
     pub fn of(places: &[Vec3]) -> Option<Self> {
         let heights = places.iter().map(|place| place.y);
@@ -72,7 +72,7 @@ impl Skull {
         (size.min_element() > 0.0).then_some(Self { top, size, middle })
     }
 
-    /// That of the highest part of a body, without ears that stand out or up.
+    /// Measures of the highest part of a body, without ears that stand out or up.
     pub fn of_body(mesh: &Mesh) -> Option<Self> {
         let plain = Self::of(&mesh.positions)?;
         let Some(bare) = Self::without_ears(&surface(mesh, PLACES)) else { return Some(plain) };
@@ -80,7 +80,7 @@ impl Skull {
         Some(if has_ears { bare } else { plain })
     }
 
-    /// That of the highest part of a body without ears, given places all over its surface \[m\].
+    /// Measures of the highest part of a body without ears, given places all over its surface \[m\].
     pub fn without_ears(places: &[Vec3]) -> Option<Self> {
         let heights = places.iter().map(|place| place.y);
         let (low, mut top) = heights.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, top), height| {

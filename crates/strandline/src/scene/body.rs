@@ -12,7 +12,7 @@ use crate::{
 };
 
 choices! {
-    /// Which body is used when no file is named.
+    /// Body that is used when no file is named.
     pub enum Model as "body.model" {
         /// The mannequin under a grown style, also one from a file with its guides; nothing under another groom from a file.
         Auto = "auto",

@@ -94,7 +94,7 @@ fn turned(axis: Vec3, degrees: f32) -> Quat {
 }
 
 #[cfg(test)]
-#[allow(clippy::disallowed_methods)] // what is held to others may be rounded
+#[allow(clippy::disallowed_methods)] // compared values may be rounded
 mod tests {
     use super::*;
     use crate::body::Interpolation;

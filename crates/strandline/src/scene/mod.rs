@@ -100,7 +100,7 @@ settings! {
         plain {
             /// The folder that relative paths start from; not part of the file.
             folder: PathBuf,
-            /// Which settings the file gives that a groom would else choose.
+            /// Settings that the file gives and a groom would else choose.
             given: Given,
         }
     }
@@ -116,7 +116,7 @@ impl Scene {
     pub const MAX_MAP_SIDE: u32 = 8192;
 
     /// Sets defaults that depend on the file: a style brings the settings that it needs.
-    /// Files of before `[devices]` name the devices elsewhere.
+    /// Files that are older than `[devices]` name the devices elsewhere.
     fn prepare(&mut self, given: &<Self as Value>::Given) {
         if given.groom.as_ref().is_none_or(|groom| groom.file.is_none()) {
             let style = given.style.as_ref().and_then(|style| style.style);

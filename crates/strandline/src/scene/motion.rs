@@ -87,7 +87,7 @@ impl MotionSection {
     /// Keyframes that are missing, not finite or not in the order of their times.
     pub fn motion(&self) -> Result<Motion, Error> {
         Ok(match self.name {
-            // That of a file is loaded with the scene.
+            // The motion of a file is loaded with the scene.
             MotionName::Still | MotionName::File => Motion::Still,
             MotionName::Shake => Motion::Shake,
             MotionName::Nod => Motion::Nod,

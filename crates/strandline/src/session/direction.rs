@@ -42,7 +42,7 @@ pub(crate) struct Direction {
 }
 
 impl Direction {
-    /// That of a scene whose head moves so, seen from the origin of the simulation.
+    /// Direction of a scene whose head moves so, seen from the origin of the simulation.
     pub fn new(scene: &Scene, head_from_origin: HeadMotion) -> Self {
         let start = scene.film.start;
         let (wind, motion) = (scene.wind.clone(), scene.motion.clone());

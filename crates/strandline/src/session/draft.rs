@@ -36,7 +36,7 @@ struct Step {
 /// A simpler picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Draft {
-    /// Which of [`STEPS`] it is.
+    /// Index among [`STEPS`].
     step: usize,
 }
 

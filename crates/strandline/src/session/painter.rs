@@ -19,7 +19,7 @@ use crate::{
 
 /// A renderer, and the data to start another one on the CPU.
 pub(crate) struct Painter {
-    place: Place,
+    place: AnyRenderer,
     /// Renderer on the CPU for pictures beyond the limits of the GPU; `stands_in` while it draws.
     stand_in: Option<Box<Renderer>>,
     stands_in: bool,
@@ -37,7 +37,8 @@ pub(crate) struct Painter {
     pub notes: Vec<String>,
 }
 
-enum Place {
+/// The renderer of either backend.
+enum AnyRenderer {
     /// `None` before the first picture: many sessions simulate alone.
     Cpu(Option<Box<Renderer>>),
     Gpu(Box<GpuRenderer>),
@@ -61,12 +62,12 @@ impl Painter {
                     notes.push(format!("drawing on the CPU: {error}"));
                     None
                 }
-                made => Some(Place::Gpu(made?.into())),
+                made => Some(AnyRenderer::Gpu(made?.into())),
             },
             None => None,
         };
         Ok(Self {
-            place: placed.unwrap_or(Place::Cpu(None)),
+            place: placed.unwrap_or(AnyRenderer::Cpu(None)),
             stand_in: None,
             stands_in: false,
             strands,
@@ -87,8 +88,8 @@ impl Painter {
     /// The device, unless all pictures are drawn on the CPU.
     pub fn gpu(&self) -> Option<&Gpu> {
         match &self.place {
-            Place::Gpu(renderer) => Some(renderer.gpu()),
-            Place::Cpu(_) => None,
+            AnyRenderer::Gpu(renderer) => Some(renderer.gpu()),
+            AnyRenderer::Cpu(_) => None,
         }
     }
 
@@ -110,9 +111,9 @@ impl Painter {
     /// Changes size and finish of the pictures; nothing changes when that fails.
     pub fn set_picture(&mut self, settings: &PictureSettings) -> Result<(), RenderError> {
         let changed = match &mut self.place {
-            Place::Cpu(Some(renderer)) => renderer.set_picture(settings),
-            Place::Cpu(None) => settings.validate(),
-            Place::Gpu(renderer) => renderer.set_picture(settings),
+            AnyRenderer::Cpu(Some(renderer)) => renderer.set_picture(settings),
+            AnyRenderer::Cpu(None) => settings.validate(),
+            AnyRenderer::Gpu(renderer) => renderer.set_picture(settings),
         };
         if let Err(failure) = changed {
             self.recover(failure, settings)?;
@@ -132,8 +133,8 @@ impl Painter {
     ) -> Result<(Picture, FrameReport), RenderError> {
         let mut picture = Picture::default();
         let drawn = match &mut self.place {
-            Place::Cpu(_) => self.draw_on_cpu(input, &mut picture),
-            Place::Gpu(renderer) => {
+            AnyRenderer::Cpu(_) => self.draw_on_cpu(input, &mut picture),
+            AnyRenderer::Gpu(renderer) => {
                 renderer.show_layers(self.layers_of);
                 renderer.draw_into(input, points, &mut picture)
             }
@@ -162,11 +163,11 @@ impl Painter {
         format: strandline_gpu::wgpu::TextureFormat,
     ) -> Result<FrameReport, RenderError> {
         match &mut self.place {
-            Place::Gpu(renderer) => {
+            AnyRenderer::Gpu(renderer) => {
                 renderer.show_layers(self.layers_of);
                 renderer.draw_to(input, points, target, format)
             }
-            Place::Cpu(_) => {
+            AnyRenderer::Cpu(_) => {
                 let found = "pictures that the CPU draws".to_owned();
                 let expected = "hair on the device of the texture, as `FrameLoop::with_device` opens it";
                 Err(SettingError::new("the target texture", found, expected).into())
@@ -177,8 +178,8 @@ impl Painter {
     /// Draws on the CPU, whose renderer is made for the first picture.
     fn draw_on_cpu(&mut self, input: &FrameInput, picture: &mut Picture) -> Result<FrameReport, RenderError> {
         let place = match &mut self.place {
-            Place::Cpu(renderer) => renderer,
-            Place::Gpu(_) => &mut self.stand_in,
+            AnyRenderer::Cpu(renderer) => renderer,
+            AnyRenderer::Gpu(_) => &mut self.stand_in,
         };
         let made = match place.take() {
             Some(renderer) => renderer,
@@ -193,9 +194,11 @@ impl Painter {
     pub fn maps(&self, light: usize) -> Result<Option<[Picture; 2]>, RenderError> {
         let pair = match (&self.place, self.stand_in.as_ref().filter(|_| self.stands_in)) {
             (_, Some(renderer)) => (renderer.opacity_map(light), renderer.depth_map(light)),
-            (Place::Cpu(Some(renderer)), None) => (renderer.opacity_map(light), renderer.depth_map(light)),
-            (Place::Cpu(None), None) => return Ok(None),
-            (Place::Gpu(renderer), None) => (renderer.opacity_map(light)?, renderer.depth_map(light)?),
+            (AnyRenderer::Cpu(Some(renderer)), None) => {
+                (renderer.opacity_map(light), renderer.depth_map(light))
+            }
+            (AnyRenderer::Cpu(None), None) => return Ok(None),
+            (AnyRenderer::Gpu(renderer), None) => (renderer.opacity_map(light)?, renderer.depth_map(light)?),
         };
         Ok(pair.0.zip(pair.1).map(|(opacity, depth)| [opacity, depth]))
     }
@@ -221,7 +224,7 @@ impl Painter {
     pub fn fall_back_after(&mut self, failure: &str, settings: &PictureSettings) -> Result<(), RenderError> {
         if self.gpu().is_some() {
             let made = on_cpu(&self.strands, self.bound.as_ref(), self.mesh.as_deref(), settings)?;
-            self.place = Place::Cpu(Some(made));
+            self.place = AnyRenderer::Cpu(Some(made));
             self.notes.push(format!("drawing on the CPU from here on: {failure}"));
         }
         Ok(())
@@ -272,7 +275,7 @@ mod tests {
         let mut painter = Painter::new(device, &prepared.guides, None, None, None).unwrap();
         let small = PictureSettings { width: 16, height: 12, ..PictureSettings::default() };
         painter.set_picture(&small).unwrap();
-        assert!(matches!(painter.place, Place::Cpu(None)) && painter.maps(0).unwrap().is_none());
+        assert!(matches!(painter.place, AnyRenderer::Cpu(None)) && painter.maps(0).unwrap().is_none());
         // A size is refused before there is a renderer.
         assert!(painter.set_picture(&PictureSettings { width: 0, ..small }).is_err());
         assert_eq!([painter.settings.width, painter.settings.height], [16, 12]);

@@ -13,7 +13,7 @@ use strandline_base::npz::Array;
 
 use crate::{
     body::BodyFrame,
-    sim::{Checkpoint, Part},
+    sim::{Checkpoint, StateArray},
     strands::bodies::{self, LISTS, Lists, OF_STATE},
 };
 
@@ -94,7 +94,7 @@ impl Snapshot {
         clock: &[f64],
         poses: &[f32],
         lists: &[Vec<f32>; LISTS],
-        parts: Vec<Part>,
+        parts: Vec<StateArray>,
     ) -> Result<Self, String> {
         let [frame, time, state_time] = clock else {
             return Err("state_clock: expected three numbers".to_owned());

@@ -18,7 +18,7 @@ use super::{
 };
 use crate::{
     scene::MAX_FILE_BYTES,
-    sim::{Checkpoint, Part},
+    sim::{Checkpoint, StateArray},
     strands::bodies::{self, Lists},
 };
 
@@ -92,7 +92,7 @@ fn part(
     [strands, points]: [usize; 2],
     columns: usize,
     number: impl Fn(usize, usize) -> f32,
-) -> Result<Part, String> {
+) -> Result<StateArray, String> {
     let mut numbers = Vec::with_capacity(block_count(strands) * points * columns * LANES);
     for block in 0..block_count(strands) {
         for point in 0..points {
@@ -103,7 +103,7 @@ fn part(
         }
     }
     check(name, &numbers)?;
-    Ok(Part { name, shape: shape_of([strands, points], columns), numbers })
+    Ok(StateArray { name, shape: shape_of([strands, points], columns), numbers })
 }
 
 /// Shape of an array of a state.
@@ -183,7 +183,7 @@ fn check_hair<R: Read + Seek>(npz: &mut Npz<R>, shape: [usize; 2]) -> Result<(),
 
 /// The numbers of an array of a state, strand after strand; `None` where there is no such array.
 fn numbers(
-    parts: &[Part],
+    parts: &[StateArray],
     name: &str,
     [strands, points]: [usize; 2],
     columns: usize,

@@ -11,7 +11,7 @@ use super::{
     names,
 };
 use crate::{
-    sim::Part,
+    sim::StateArray,
     strands::bodies::{LISTS, OF_STATE, WIDTHS},
 };
 
@@ -56,7 +56,7 @@ pub(crate) fn read<R: Read + Seek>(
         check_memory(&name, rows.bytes(), 2)?;
         let shape = rows.shape().iter().map(|count| *count as usize).collect();
         let numbers = f32s_of(&npz.all(&mut rows).map_err(text)?);
-        parts.push(Part { name: part, shape, numbers });
+        parts.push(StateArray { name: part, shape, numbers });
     }
     let snapshot = Snapshot::new(&clock, &poses, &lists, parts)?;
     let origin_name = named(ORIGIN);

@@ -40,7 +40,7 @@ impl BoundStrands {
         self.binding.strands()
     }
 
-    /// Which guides each strand follows.
+    /// Guides that each strand follows.
     pub fn binding(&self) -> &Arc<Binding> {
         &self.binding
     }

@@ -19,7 +19,7 @@ pub struct Tags {
 }
 
 impl Tags {
-    /// Those of a groom. Groups of large numbers are numbered again, in the order of their numbers.
+    /// Tags of a groom. Groups of large numbers are numbered again, in the order of their numbers.
     pub(crate) fn new(groom: &Groom, guides: Option<&[usize]>) -> Self {
         let mut numbers: Vec<u32> = groom.groups.clone().unwrap_or_default();
         numbers.sort_unstable();
@@ -45,7 +45,7 @@ impl Tags {
         }
     }
 
-    /// Those of the simulated strands, where others are bound to them.
+    /// Tags of the simulated strands, where others are bound to them.
     pub(crate) fn of_guides(&self) -> Self {
         let Some(guides) = &self.guides else { return self.clone() };
         Self {

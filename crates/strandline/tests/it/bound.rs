@@ -1,5 +1,5 @@
 //! Strands that are bound to simulated ones, from a scene to a picture.
-#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+#![allow(clippy::disallowed_methods)] // compared values may be rounded
 
 use strandline::{
     Backend, Cache, Devices, Event, Groom, OutSettings, Picture, Player, Prepared, Scene, What,

@@ -1,6 +1,6 @@
 //! Every groom on every head of a folder of files of others: no placement is confident and wrong.
 
-#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+#![allow(clippy::disallowed_methods)] // compared values may be rounded
 
 use std::f32::consts::{FRAC_PI_2, PI};
 use std::path::{Path, PathBuf};

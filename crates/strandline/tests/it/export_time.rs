@@ -1,5 +1,5 @@
 //! Files of moving hair hold the hair and the head at the times that they say.
-#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+#![allow(clippy::disallowed_methods)] // compared values may be rounded
 
 use std::path::Path;
 

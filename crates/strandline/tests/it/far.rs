@@ -1,6 +1,6 @@
 //! Hair far from the origin of the world is as exact as beside it.
 
-#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+#![allow(clippy::disallowed_methods)] // compared values may be rounded
 
 use std::path::Path;
 

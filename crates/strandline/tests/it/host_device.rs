@@ -1,5 +1,5 @@
 //! Hair on a device that the host owns: drawn into its textures, without a wait.
-#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+#![allow(clippy::disallowed_methods)] // compared values may be rounded
 
 use glam::{Vec2, Vec3};
 use strandline::{

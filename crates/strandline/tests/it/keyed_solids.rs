@@ -1,6 +1,6 @@
 //! Solids of `[[colliders]]` that move through keyframes.
 
-#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+#![allow(clippy::disallowed_methods)] // compared values may be rounded
 
 use glam::{Vec3, vec3};
 use strandline::{

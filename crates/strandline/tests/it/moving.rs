@@ -1,5 +1,5 @@
 //! Bodies that move by themselves: clips, vertices in memory and files of vertices.
-#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+#![allow(clippy::disallowed_methods)] // compared values may be rounded
 
 mod solids;
 mod told;

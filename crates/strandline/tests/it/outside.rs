@@ -1,5 +1,5 @@
 //! Strands of a file that rest inside the body: they are put outside at load, with a note.
-#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+#![allow(clippy::disallowed_methods)] // compared values may be rounded
 
 use glam::{Vec3, vec3};
 use strandline::{

@@ -1,5 +1,5 @@
 //! Hair that begins where other hair was left.
-#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+#![allow(clippy::disallowed_methods)] // compared values may be rounded
 
 use strandline::{
     Backend, Error, Event, Hair, OutSettings, Picture, Player, Pose, Scene,

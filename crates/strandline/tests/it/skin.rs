@@ -1,6 +1,6 @@
 //! Hair on a skin that moves by itself.
 
-#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+#![allow(clippy::disallowed_methods)] // compared values may be rounded
 
 use glam::{Quat, Vec3, vec3};
 use strandline::{

@@ -1,5 +1,5 @@
 //! Time of films: exact numbers of steps, and the same motion however often it is looked at.
-#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+#![allow(clippy::disallowed_methods)] // compared values may be rounded
 
 use glam::Vec3;
 use strandline::{

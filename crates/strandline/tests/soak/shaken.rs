@@ -1,5 +1,5 @@
 //! A head shaken at 20 g and 5 Hz: a minute of it, or as many hours as `bench/soak.sh` asks for.
-#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+#![allow(clippy::disallowed_methods)] // compared values may be rounded
 
 use std::f64::consts::TAU;
 

@@ -51,7 +51,7 @@ pub struct SkinColor {
 }
 
 impl SkinColor {
-    /// That of a body among the roots of hair, which has its `own` colour, if there is one.
+    /// Colour of a body among the roots of hair, which has its `own` colour, if there is one.
     pub fn new(bare: Vec3, body: &BodyLook, look: &Look, own: Option<Vec3>) -> Self {
         Self { bare, scalp: look.scalp(body.scalp, own) }
     }
@@ -65,7 +65,7 @@ impl SkinColor {
 /// Content of a cell.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Cell {
-    /// Which cell of the grid it is.
+    /// Index of the cell in the grid.
     pub(crate) index: usize,
     /// Area of its hair, full width times length, over that of a face.
     pub(crate) hair: f32,

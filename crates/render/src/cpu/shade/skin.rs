@@ -82,7 +82,7 @@ pub(crate) struct Finish {
 }
 
 impl Finish {
-    /// That of a look with a factor of its colour, or of paint.
+    /// Finish of a look with a factor of its colour, or of paint.
     fn new(look: &BodyLook, tint: Vec3, painted: Option<&Painted>) -> Self {
         let color = painted.map_or(look.color, |painted| painted.color_on(look.color)) * tint;
         let skin = if painted.is_none_or(Painted::is_skin) { 1.0 } else { 0.0 };

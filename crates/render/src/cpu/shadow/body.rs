@@ -27,7 +27,7 @@ pub struct ShadowBody<'a> {
 pub struct Cuts<'a>(&'a Surfaces);
 
 impl<'a> Cuts<'a> {
-    /// Those of the materials of a body.
+    /// Cut-outs of the materials of a body.
     pub(crate) fn of(surfaces: &'a Surfaces) -> Self {
         Self(surfaces)
     }

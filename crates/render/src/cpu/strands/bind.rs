@@ -23,7 +23,7 @@ impl Carried {
         Self { binding, solids, frames: Frames::default(), places: Vec::new() }
     }
 
-    /// Which guides each strand follows.
+    /// Guides that each strand follows.
     pub fn binding(&self) -> &Binding {
         &self.binding
     }

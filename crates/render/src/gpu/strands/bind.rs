@@ -135,7 +135,7 @@ impl BoundStrands {
         self.solids.take(body)
     }
 
-    /// Which guides each strand follows.
+    /// Guides that each strand follows.
     pub fn binding(&self) -> &Binding {
         &self.binding
     }

@@ -1,5 +1,5 @@
 //! Hair on a GPU as the façade has it.
-#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+#![allow(clippy::disallowed_methods)] // compared values may be rounded
 
 mod lost;
 
