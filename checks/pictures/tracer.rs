@@ -301,3 +301,36 @@ pub fn light_by_orders(scene: &Scene, to_light: Vec3, paths: u32) -> Vec<f64> {
     let mean = |order: usize| found.iter().map(|run| run[order]).sum::<f64>() / f64::from(runs * RUN);
     (0..ORDERS).map(mean).collect()
 }
+
+/// Means of the sine of inclination and of the cosine of the turn of picked light are those of the lobes.
+#[test]
+fn light_is_picked_as_a_fibre_shows_it() {
+    let fibre = Fibre::new(&Chiang { eumelanin: 0.3, pheomelanin: 0.0, ..Chiang::default() });
+    let (eye, mut random) = (0.5, Random::new(5, 1));
+    let (mut picked, mut expected) = ([0.0; 3], [0.0; 3]);
+    let add = |sums: &mut [f64; 3], weight: f64, inclination: f64, turn: f64| {
+        let values = [1.0, inclination.sin(), turn.cos()];
+        sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+    };
+    let count = 40_000;
+    for _ in 0..count {
+        let offset = f64::from(random.signed());
+        if let Some([inclination, turn]) = fibre.pick(eye, offset, || f64::from(random.unit())) {
+            add(&mut picked, 1.0 / f64::from(count), inclination, turn);
+        }
+    }
+    let steps = 90;
+    let middle = |step: u32, whole: f64| (f64::from(step) + 0.5) / f64::from(steps) * whole;
+    for (row, column) in (0..steps).flat_map(|row| (0..steps).map(move |column| (row, column))) {
+        let (inclination, turn) = (middle(row, PI) - 0.5 * PI, middle(column, TAU));
+        let solid = inclination.cos() * PI * TAU / f64::from(steps * steps);
+        for part in 0..8 {
+            let offset = (f64::from(part) + 0.5) / 4.0 - 1.0;
+            let [shown] = fibre.lobes.scatter(eye, offset, inclination, turn, [fibre.absorption]);
+            add(&mut expected, shown * solid / 8.0, inclination, turn);
+        }
+    }
+    for (picked, expected) in picked.into_iter().zip(expected) {
+        assert!((picked - expected).abs() < 0.015, "{picked} {expected}");
+    }
+}
