@@ -86,7 +86,7 @@ fn ball() -> Mesh {
 pub struct Scene {
     pub guides: Guides,
     body: Option<Mesh>,
-    camera: Camera,
+    pub camera: Camera,
     pub look: Look,
     pub body_look: BodyLook,
     pub lights: Vec<Light>,

@@ -28,3 +28,5 @@ mod surroundings;
 mod terms;
 mod tessellation;
 mod traced;
+mod traced_again;
+mod tracer;

@@ -19,7 +19,7 @@ const DIM: f32 = 0.2;
 /// is 0.37 off. Hair that shows no more of straight light than meets it is 0.15 too dark from above as a whole, with no
 /// band beyond 0.3, and 0.2 too bright from below. With the inclinations of the 26 directions alone white hair from behind was 0.22 off, hair
 /// of any pigment but black from aside 0.28, and bands of it up to 0.96.
-const LIGHTS: [(&str, [f32; 3], [f32; 2]); 4] = [
+pub(crate) const LIGHTS: [(&str, [f32; 3], [f32; 2]); 4] = [
     ("behind", [-0.3, -0.5, 0.8], [0.1, 0.45]),
     ("side", [-1.0, -0.15, -0.1], [0.1, 0.42]),
     ("above", [0.1, -1.0, -0.05], [0.1, 0.42]),
@@ -28,11 +28,11 @@ const LIGHTS: [(&str, [f32; 3], [f32; 2]); 4] = [
 /// Direction in which the light of a low sun goes.
 const LOW: [f32; 3] = [-0.75, 0.35, -0.5];
 /// Hair, with its eumelanin and pheomelanin.
-const PIGMENTS: [(&str, [f32; 2]); 4] =
+pub(crate) const PIGMENTS: [(&str, [f32; 2]); 4] =
     [("white", [0.0, 0.0]), ("blonde", [0.3, 0.0]), ("brown", [0.6, 0.2]), ("black", [8.0, 0.0])];
 
 /// The ball of `brown_directional` with other hair in another light, all turned together.
-fn scene(turn: Quat, way: [f32; 3], [eumelanin, pheomelanin]: [f32; 2]) -> Scene {
+pub(crate) fn scene(turn: Quat, way: [f32; 3], [eumelanin, pheomelanin]: [f32; 2]) -> Scene {
     let mut scene = turned_sphere(turn, Some(Light { position: -Vec3::from(way), ..sun() }), 0.0);
     scene.look.fibre.chiang = Chiang { eumelanin, pheomelanin, ..Chiang::default() };
     scene

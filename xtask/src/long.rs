@@ -10,7 +10,7 @@ use crate::cargo::{cargo_command, root};
 use crate::{adapter, bare, python, web};
 
 /// Long tests: an environment, and the words for cargo behind `test --workspace --test`.
-const TESTS: [((&str, &str), [&str; 2]); 19] = [
+const TESTS: [((&str, &str), [&str; 2]); 20] = [
     // Each command is ended as often as this, at random times.
     (("STRANDLINE_KILLS", "52"), ["reliability", "kills::"]),
     // Seconds of random clicks, keys and files.
@@ -38,6 +38,8 @@ const TESTS: [((&str, &str), [&str; 2]); 19] = [
     (("STRANDLINE_FULL", "1"), ["pictures", "scalp::"]),
     (("STRANDLINE_FULL", "1"), ["pictures", "heads::"]),
     (("STRANDLINE_FULL", "1"), ["pictures", "shares::"]),
+    // Hair of every pigment in four lights by a path tracer of the checks.
+    (("STRANDLINE_FULL", "1"), ["pictures", "traced_again::"]),
     // Hair of every pigment on a turned ball, in five lights.
     (("STRANDLINE_FULL", "1"), ["pictures", "traced::hair_that_is_turned"]),
     // All styles on the CPU, more on a software adapter, and steps down to 1/480 s.
