@@ -24,6 +24,11 @@ impl Face {
         parts.iter().any(Option::is_some).then_some(Self { parts })
     }
 
+    /// True where all strands are lashes.
+    pub fn is_lashes(&self) -> bool {
+        self.parts.iter().all(|part| *part == Some(Style::Lashes))
+    }
+
     /// Number of strands, of some, that grow beside other hair: all but those of the part that the first strand is of.
     pub fn beside(&self, strands: impl Iterator<Item = usize>) -> usize {
         let own = self.parts.first().copied().flatten();

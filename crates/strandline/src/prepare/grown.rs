@@ -1,5 +1,6 @@
 //! Before `fit`: hair with its guides in a file, as a style grows it. Nothing is chosen that the file says.
 
+use super::face::Face;
 use super::fit::{DENSITY, is_open, mean_width, spacing};
 use super::loading::Loading;
 use crate::{
@@ -35,6 +36,10 @@ fn is_grown(scene: &Scene, groom: &Groom) -> bool {
     let are_theirs = scene.groom.guides.is_none() && scene.groom.guide_every == 1;
     if !are_theirs || !has_form_of_style(groom) || !Attribute::Widths.is_in(groom) {
         return false;
+    }
+    // Strands of a lash are rooted within each other, which says nothing of its density.
+    if Face::of(groom).is_some_and(|face| face.is_lashes()) {
+        return true;
     }
     let hair_count = scene.look.hair_count.max(1) as f32;
     let of_hair = DENSITY * spacing(groom) * (groom.strand_count() as f32 / hair_count).sqrt();
