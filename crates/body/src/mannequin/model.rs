@@ -19,6 +19,9 @@ pub struct Mannequin {
     eyes: Eyes,
 }
 
+/// Build, eyes, and the bits of spacing and padding \[m\].
+type GridKey = (Build, Eyes, [u32; 2]);
+
 /// Within this distance \[m\] of the skin the value is divided by the length of its gradient,
 /// which makes it a distance to first order; the correction has faded out at twice as much.
 const CORRECTED: f32 = 0.015;
@@ -72,7 +75,7 @@ impl Mannequin {
     /// # Errors
     /// As [`DistanceGrid::from_field`].
     pub fn grid(&self, spacing: f32, padding: f32) -> Result<Arc<DistanceGrid>, BodyError> {
-        static GRIDS: Recent<(Build, Eyes, [u32; 2]), DistanceGrid, 2> = Recent::new();
+        static GRIDS: Recent<GridKey, DistanceGrid, 2> = Recent::new();
         let key = (self.build, self.eyes, [spacing, padding].map(f32::to_bits));
         GRIDS.get(key, || DistanceGrid::from_field(self, spacing, padding))
     }
@@ -82,7 +85,7 @@ impl Mannequin {
     /// # Errors
     /// As [`DistanceGrid::from_field`].
     pub fn parts(&self, spacing: f32, padding: f32) -> Result<Arc<Vec<(Shape, Carrier)>>, BodyError> {
-        static PARTS: Recent<(Build, Eyes, [u32; 2]), Vec<(Shape, Carrier)>, 2> = Recent::new();
+        static PARTS: Recent<GridKey, Vec<(Shape, Carrier)>, 2> = Recent::new();
         let key = (self.build, self.eyes, [spacing, padding].map(f32::to_bits));
         PARTS.get(key, || {
             let bust = self.grid(spacing, padding)?;
