@@ -6,7 +6,7 @@ use strandline_base::Recent;
 use super::field::Field;
 use super::person::{Build, Eyes};
 use super::shape::BustShape;
-use crate::{Aabb, BodyError, Carrier, DistanceGrid, Neck, Shape, SignedDistance};
+use crate::{Aabb, BodyError, DistanceGrid, SignedDistance};
 
 /// The built-in bust: a smooth signed-distance model of skull, jaw, nose, ears, neck and shoulders.
 ///
@@ -18,9 +18,6 @@ pub struct Mannequin {
     build: Build,
     eyes: Eyes,
 }
-
-/// Build, eyes, and the bits of spacing and padding \[m\].
-type GridKey = (Build, Eyes, [u32; 2]);
 
 /// Within this distance \[m\] of the skin the value is divided by the length of its gradient,
 /// which makes it a distance to first order; the correction has faded out at twice as much.
@@ -75,23 +72,14 @@ impl Mannequin {
     /// # Errors
     /// As [`DistanceGrid::from_field`].
     pub fn grid(&self, spacing: f32, padding: f32) -> Result<Arc<DistanceGrid>, BodyError> {
-        static GRIDS: Recent<GridKey, DistanceGrid, 2> = Recent::new();
+        static GRIDS: Recent<(Build, Eyes, [u32; 2]), DistanceGrid, 2> = Recent::new();
         let key = (self.build, self.eyes, [spacing, padding].map(f32::to_bits));
         GRIDS.get(key, || DistanceGrid::from_field(self, spacing, padding))
     }
 
-    /// The solid parts of such a grid for a neck that bends, as [`Neck::solids`] makes them. The process keeps the last two.
-    ///
-    /// # Errors
-    /// As [`DistanceGrid::from_field`].
-    pub fn parts(&self, spacing: f32, padding: f32) -> Result<Arc<Vec<(Shape, Carrier)>>, BodyError> {
-        static PARTS: Recent<GridKey, Vec<(Shape, Carrier)>, 2> = Recent::new();
-        let key = (self.build, self.eyes, [spacing, padding].map(f32::to_bits));
-        PARTS.get(key, || {
-            let bust = self.grid(spacing, padding)?;
-            let parts = Neck::new(self.neck_pivot()).solids(&bust);
-            Ok(parts.into_iter().map(|(part, carrier)| (Shape::Grid(Arc::new(part)), carrier)).collect())
-        })
+    /// Build and eyes.
+    pub(crate) fn person(&self) -> (Build, Eyes) {
+        (self.build, self.eyes)
     }
 
     /// True where the eyeballs show.

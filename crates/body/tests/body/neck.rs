@@ -213,7 +213,7 @@ fn planes_about_all_parts_hold_each() {
             (told, all) = (told + usize::from(beyond > 0.01), all + 1);
         }
         assert!(2 * told > all, "{bend:?}: {told} of {all}");
-        // What rests on a part moves no farther than the bounds say.
+        // A point that rests on a part moves no farther than the bounds say.
         for (part, start) in
             parts.iter().zip([Vec3::new(0.05, -0.1, 0.08), Vec3::new(-0.3, 0.1, -0.2)].iter().cycle())
         {

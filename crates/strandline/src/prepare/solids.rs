@@ -43,9 +43,9 @@ pub(super) fn solids(loading: &mut Loading) -> Result<(), Error> {
     let neck = loading.mesh.as_ref().and_then(|mesh| mesh.neck);
     if let Some(shape) = loading.shape.clone().filter(|_| is_solid) {
         let parts = match neck {
-            Some(_) => {
+            Some(neck) => {
                 let mannequin = Mannequin::of(scene.body.build, scene.body.eyes);
-                mannequin.parts(scene.body.spacing, DISTANCE_PADDING)?.to_vec()
+                neck.solids_of(&mannequin, scene.body.spacing, DISTANCE_PADDING)?.to_vec()
             }
             None => vec![(shape, Carrier::HEAD)],
         };
