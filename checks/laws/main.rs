@@ -32,6 +32,7 @@ mod shelter;
 mod sintel;
 mod skin_contact;
 mod skin_depth;
+mod skin_walls;
 mod small_motion;
 mod spans;
 mod springs;

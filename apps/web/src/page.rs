@@ -64,7 +64,7 @@ impl Page {
     fn load(mut wanted: Wanted) -> Result<Self, String> {
         wanted.size = wanted.size.map(|side| side.clamp(SIDES[0], SIDES[1]));
         let mut scene = Scene::demo();
-        (scene.motion.name, scene.motion.neck) = (MotionName::Turn, true);
+        scene.motion.name = MotionName::Turn;
         [scene.picture.width, scene.picture.height] = wanted.size;
         let mut own = Own::OFF;
         let mut settings = Vec::new();

@@ -1,9 +1,15 @@
 //! The neck of the built-in bust as solids.
 
+use std::sync::Arc;
+
 use glam::Vec3;
+use strandline_base::Recent;
 
 use crate::neck::{LEVELS, Neck, SLICES, SLOPE, level as level_of};
-use crate::{Aabb, Caps, Carrier, DistanceGrid};
+use crate::{Aabb, BodyError, Build, Caps, Carrier, DistanceGrid, Eyes, Mannequin, Shape};
+
+/// Solids with their carriers.
+type Parts = Vec<(Shape, Carrier)>;
 
 /// Overlap \[m\] of neighbouring parts on either side.
 const OVERLAP: f32 = 0.006;
@@ -56,6 +62,27 @@ impl Neck {
             parts.push((part.with_caps(caps), Carrier::Piece(slice as u16 + 2)));
         }
         parts
+    }
+}
+
+impl Neck {
+    /// The solid parts of [`Mannequin::grid`] at a spacing and with a padding \[m\]: see [`Neck::solids`]. The process keeps the
+    /// last two.
+    ///
+    /// # Errors
+    /// As [`Mannequin::grid`].
+    pub fn solids_of(
+        &self,
+        mannequin: &Mannequin,
+        spacing: f32,
+        padding: f32,
+    ) -> Result<Arc<Parts>, BodyError> {
+        static PARTS: Recent<((Build, Eyes), [u32; 2]), Parts, 2> = Recent::new();
+        PARTS.get((mannequin.person(), [spacing, padding].map(f32::to_bits)), || {
+            let bust = mannequin.grid(spacing, padding)?;
+            let parts = self.solids(bust.as_ref());
+            Ok(parts.into_iter().map(|(part, carrier)| (Shape::Grid(Arc::new(part)), carrier)).collect())
+        })
     }
 }
 

@@ -8,6 +8,7 @@ use strandline_base::math;
 
 use crate::bvh::{self, JointMotion};
 use crate::gltf::{self, Fault, Rig};
+use crate::leaps::Leaps;
 use crate::parsing::{A_NAME, read_file, remedy};
 use crate::teleports::Teleports;
 use crate::{BodyError, Pose};
@@ -19,6 +20,8 @@ pub struct RecordedMotion {
     /// Metres of a unit of the file.
     scale: f64,
     teleports: Teleports,
+    /// Jumps between two samples.
+    leaps: Leaps,
 }
 
 #[derive(Clone, Debug)]
@@ -54,7 +57,8 @@ impl RecordedMotion {
             return Err(refused((found, A_NAME)));
         };
         let teleports = rig.teleports().clone();
-        Ok(Self { source: Source::Node(Arc::new(rig), node), scale, teleports })
+        let leaps = Leaps::default();
+        Ok(Self { source: Source::Node(Arc::new(rig), node), scale, teleports, leaps }.with_leaps())
     }
 
     /// Reads the motion of a joint from the bytes of a .bvh.
@@ -68,7 +72,27 @@ impl RecordedMotion {
     }
 
     fn of_joint(motion: JointMotion, scale: f64) -> Self {
-        Self { source: Source::Joint(Arc::new(motion)), scale, teleports: Teleports::default() }
+        let (source, teleports) = (Source::Joint(Arc::new(motion)), Teleports::default());
+        Self { source, scale, teleports, leaps: Leaps::default() }.with_leaps()
+    }
+
+    /// The same, in which the head jumps between samples that lie too far apart for a person's. Those with a mark between them
+    /// are jumps already.
+    fn with_leaps(self) -> Self {
+        let mut spans = match &self.source {
+            Source::Node(rig, _) => rig.fast_spans(),
+            Source::Joint(motion) => (1..motion.poses.len())
+                .map(|frame| [frame - 1, frame].map(|frame| frame as f64 * motion.frame_time))
+                .collect(),
+        };
+        spans.retain(|span| self.teleports.is_after(*span, span[1]).is_none());
+        let pose = |time| {
+            let (rotation, place) = self.joint(time);
+            let pose = Pose { rotation: rotation.as_quat(), translation: (self.scale * place).as_vec3() };
+            if pose.rotation.is_finite() && pose.translation.is_finite() { pose } else { Pose::IDENTITY }
+        };
+        let leaps = Leaps::find(spans, 1.0, Vec3::ZERO, pose);
+        Self { leaps, ..self }
     }
 
     /// Adds marks, times of the motion \[s\] at which the head is elsewhere at once: see
@@ -78,7 +102,7 @@ impl RecordedMotion {
     /// Times that are not finite.
     pub fn with_teleports(self, times: &[f64]) -> Result<Self, BodyError> {
         let teleports = Teleports::new(&[self.teleports.times(), times].concat())?;
-        Ok(Self { teleports, ..self })
+        Ok(Self { teleports, ..self }.with_leaps())
     }
 
     /// The head's pose (`world_from_head`) at a time \[s\]: it turns about the pivot \[m\], head space, and moves it, as the
@@ -89,7 +113,7 @@ impl RecordedMotion {
 
     /// The head's pose as [`RecordedMotion::pose`], in a world whose origin lies at `origin` \[m\].
     pub fn pose_from(&self, time: f64, pivot: Vec3, origin: Vec3) -> Pose {
-        let [(first, start), (now, place)] = [0.0, time].map(|time| self.joint(time));
+        let [(first, start), (now, place)] = [0.0, self.leaps.held(time)].map(|time| self.joint(time));
         let rotation = (now * first.conjugate()).normalize().as_quat();
         let mut pose = Pose::rotation_about(pivot, rotation);
         let by = self.scale * (place - start);
@@ -98,10 +122,11 @@ impl RecordedMotion {
         pose
     }
 
-    /// Number of marks up to a time \[s\]; `None` of a motion without any.
+    /// Number of marks and jumps up to a time \[s\]; `None` of a motion without any.
     pub fn jumps_until(&self, time: f64) -> Option<i64> {
         let marks = &self.teleports;
-        (!marks.times().is_empty()).then(|| marks.passed(time, 0.0))
+        let is_cut = !marks.times().is_empty() || !self.leaps.is_empty();
+        is_cut.then(|| marks.passed(time, 0.0) + self.leaps.passed(time, 0.0))
     }
 
     /// Rotation and place of the joint in the world, units of the file.
@@ -178,6 +203,27 @@ mod tests {
         assert!(motion.clone().with_teleports(&[f64::NAN]).is_err());
         let absent = RecordedMotion::load(&path, "Hips", None, 1.0).unwrap_err().to_string();
         assert!(absent.contains("no joint `Hips` among `Head`") && !absent.contains("export"), "{absent}");
+    }
+
+    #[test]
+    fn a_flip_between_two_frames_is_a_jump() {
+        let read = |degrees: f32| {
+            let text = format!(
+                "HIERARCHY ROOT Head {{ OFFSET 0 0 0 CHANNELS 3 Yrotation Xrotation Zrotation }} MOTION Frames: 3 \
+                 Frame Time: 0.04 0 0 0 {degrees} 0 0 {degrees} 0 0"
+            );
+            RecordedMotion::from_bvh(text.as_bytes(), "Head", 1.0).unwrap()
+        };
+        let (flip, turn) = (read(180.0), read(48.0));
+        assert_eq!(flip.pose(0.039, Vec3::Y), flip.pose(0.0, Vec3::Y), "the frame before is held");
+        assert!(flip.pose(0.04, Vec3::Y).direction(Vec3::Z).z < -0.999);
+        assert_eq!([0.0, 0.039, 0.04, 9.0].map(|time| flip.jumps_until(time)), [0, 0, 1, 1].map(Some));
+        assert_eq!(turn.jumps_until(1.0), None);
+        assert_ne!(turn.pose(0.02, Vec3::Y), turn.pose(0.0, Vec3::Y));
+        // A mark that somebody set is the jump.
+        let marked = flip.clone().with_teleports(&[0.02]).unwrap();
+        assert!(marked.pose(0.03, Vec3::Y).direction(Vec3::Z).z < -0.999);
+        assert_eq!([0.01, 0.02, 9.0].map(|time| marked.jumps_until(time)), [0, 1, 1].map(Some));
     }
 
     #[test]

@@ -5,11 +5,14 @@ use std::sync::{Arc, Mutex};
 
 use glam::{Quat, Vec3};
 
+use crate::leaps::Leaps;
 use crate::rigid_fit::rigid_fit;
-use crate::{BodyError, BodyFrame, Playback, VertexMotion};
+use crate::{BodyError, BodyFrame, Playback, Pose, VertexMotion};
 
 /// Most vertices that the head's transform is fitted to.
 const FITTED: usize = 2048;
+/// Most vertices by which jumps between samples are found.
+const LOOKED_AT: usize = 64;
 /// Vertices of one joint that tell its rotation.
 const LEAST: usize = 8;
 /// Largest coordinate that is taken for a place \[m\].
@@ -44,6 +47,8 @@ struct Moving {
     /// Metres of a unit of the file, and its rotation into head space.
     scale: f32,
     turn: Quat,
+    /// Jumps of the head between two samples.
+    leaps: Leaps,
 }
 
 impl Moving {
@@ -62,7 +67,27 @@ impl Moving {
             let (found, expected) = (format!("{own}, for a mesh of {count}"), "those of the mesh");
             return Err(BodyError::Value { what: "the number of vertices that move", found, expected });
         }
-        Ok(Self { motion, playback, first, origin: origin.into(), scale, turn })
+        Ok(Self { motion, playback, first, origin: origin.into(), scale, turn, leaps: Leaps::default() })
+    }
+
+    /// The same, in which the head jumps between samples of the motion too far apart for a person's. Those with a mark between
+    /// them are jumps already. The head is where vertices of these indices are.
+    fn with_leaps(self, rest: &[Vec3], head: &[u32]) -> Self {
+        let Some(place) = head.first().map(|index| rest[*index as usize]) else { return self };
+        let own: Vec<Vec3> = head.iter().map(|index| rest[*index as usize]).collect();
+        let all: Vec<u32> = (0..head.len() as u32).collect();
+        let pose = |time: f64| {
+            let moved = self.motion.places(time, head);
+            let placed = own.iter().zip(head).zip(moved).map(|((rest, index), moved)| {
+                *rest + self.turn * (self.scale * (moved - self.origin[*index as usize]))
+            });
+            let pose = rigid_fit(&own, &placed.collect::<Vec<_>>(), &all);
+            if pose.rotation.is_finite() && pose.translation.is_finite() { pose } else { Pose::IDENTITY }
+        };
+        let mut spans = self.motion.spans();
+        spans.retain(|span| self.motion.marks().is_after(*span, span[1]).is_none());
+        let leaps = Leaps::find(spans, self.playback.speed, place, pose);
+        Self { leaps, ..self }
     }
 
     /// Indices of its vertices in the mesh.
@@ -72,12 +97,19 @@ impl Moving {
 
     /// Time of the motion at one of the scene \[s\].
     fn time(&self, time: f64) -> f64 {
-        self.playback.time(time, self.motion.end())
+        self.leaps.held(self.playback.time(time, self.motion.end()))
     }
 
-    /// Number of marks up to a time of the scene \[s\].
+    /// True where the motion is elsewhere at once at some time.
+    fn is_cut(&self) -> bool {
+        !self.motion.teleports().is_empty() || !self.leaps.is_empty()
+    }
+
+    /// Number of marks and jumps up to a time of the scene \[s\].
     fn passed(&self, time: f64) -> i64 {
-        self.motion.marks().passed(self.time(time), self.playback.rounds(time, self.motion.end()))
+        let (rounds, end) = (self.playback.rounds(time, self.motion.end()), self.motion.end());
+        let time = self.playback.time(time, end);
+        self.motion.marks().passed(time, rounds).saturating_add(self.leaps.passed(time, rounds))
     }
 
     /// Writes the places of its vertices at a time of the motion \[s\] over those at rest, head space \[m\]. Returns the number
@@ -121,13 +153,10 @@ impl SkinMotion {
         let rigid = motion.rigid(&all);
         let all = if rigid.len() < LEAST { all } else { rigid };
         let every = all.len().div_ceil(FITTED);
-        let body = Moving::new(motion, playback, (0, rest.len()), placing)?;
-        Ok(Self {
-            parts: vec![body],
-            rest: rest.into(),
-            fitted: all.into_iter().step_by(every).collect(),
-            last: Arc::default(),
-        })
+        let fitted: Arc<[u32]> = all.into_iter().step_by(every).collect();
+        let few: Vec<u32> = fitted.iter().copied().step_by(fitted.len().div_ceil(LOOKED_AT)).collect();
+        let body = Moving::new(motion, playback, (0, rest.len()), placing)?.with_leaps(rest, &few);
+        Ok(Self { parts: vec![body], rest: rest.into(), fitted, last: Arc::default() })
     }
 
     /// Adds a motion of further vertices, from the one of number `first` on: a part of the body in a file of its own. It
@@ -156,8 +185,8 @@ impl SkinMotion {
     /// The body at a time of the scene \[s\].
     pub fn frame(&self, time: f64) -> BodyFrame {
         let frame = self.frame_without_marks(time);
-        let marked = |part: &&Moving| !part.motion.teleports().is_empty();
-        let passed = self.parts.iter().filter(marked).map(|part| part.passed(time));
+        let cut = |part: &&Moving| part.is_cut();
+        let passed = self.parts.iter().filter(cut).map(|part| part.passed(time));
         match passed.reduce(i64::saturating_add) {
             Some(passed) => frame.after_jumps(passed),
             None => frame,

@@ -73,6 +73,7 @@ impl PlacedSolids<'_> {
             let local = self.local(solid.carrier, point);
             let (distance, gradient) = match posed {
                 Some(skin) => skin.distance_and_gradient(local),
+                None if solid.shape.is_beyond(local, (best.0 + away).max(0.0)) => return best,
                 None => solid.shape.distance_and_gradient(local),
             };
             if distance - away < best.0 { (distance - away, gradient, solid.carrier) } else { best }

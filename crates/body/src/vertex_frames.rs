@@ -55,6 +55,17 @@ impl VertexFrames {
         self.times.last().copied().unwrap_or_default()
     }
 
+    /// Spans \[s\] between the samples.
+    pub fn spans(&self) -> Vec<[f64; 2]> {
+        self.times.windows(2).map(|pair| [pair[0], pair[1]]).collect()
+    }
+
+    /// Positions of vertices of these indices in the last frame up to a time \[s\], else in the first.
+    pub fn places(&self, time: f64, vertices: &[u32]) -> Vec<Vec3> {
+        let frame = &self.frames[self.times.partition_point(|own| *own <= time).saturating_sub(1)];
+        vertices.iter().map(|vertex| frame[*vertex as usize]).collect()
+    }
+
     pub fn vertex_count(&self) -> usize {
         self.frames[0].len()
     }

@@ -88,6 +88,26 @@ impl VertexMotion {
         }
     }
 
+    /// Spans \[s\] between two samples in which the head may jump: all of vertices at times; of a clip those of keys between
+    /// which a node turns or moves far and fast.
+    pub(crate) fn spans(&self) -> Vec<[f64; 2]> {
+        match &self.source {
+            Source::Clip(rig) => rig.fast_spans(),
+            Source::Frames(frames, _) => frames.spans(),
+        }
+    }
+
+    /// Positions of vertices of these indices at the time of a sample \[s\], units of the file.
+    pub(crate) fn places(&self, time: f64, vertices: &[u32]) -> Vec<Vec3> {
+        match &self.source {
+            Source::Clip(rig) => {
+                let all = rig.positions(Some(time), &self.teleports);
+                vertices.iter().map(|vertex| all[*vertex as usize]).collect()
+            }
+            Source::Frames(frames, _) => frames.places(time, vertices),
+        }
+    }
+
     /// Positions of all vertices at rest, units of the file.
     pub(crate) fn rest(&self) -> Vec<Vec3> {
         match &self.source {

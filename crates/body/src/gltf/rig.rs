@@ -17,6 +17,8 @@ use crate::teleports::Teleports;
 
 /// Most keys at which a clip is searched for mirror images.
 const MOST_KEYS: usize = 4096;
+/// Most spans between keys that are searched for jumps.
+const MOST_SPANS: usize = 1024;
 /// Share of one node from which on a vertex moves rigidly with it.
 const RIGID: f32 = 0.99;
 
@@ -276,6 +278,11 @@ impl Rig {
             let name = self.names[node].as_ref();
             Some((*time, name.map_or_else(|| format!("node {node}"), |name| format!("`{name}`"))))
         })
+    }
+
+    /// Spans \[s\] between two keys of a node that are far apart, the first ones of many.
+    pub fn fast_spans(&self) -> Vec<[f64; 2]> {
+        self.tracks.iter().flat_map(Track::fast_spans).take(MOST_SPANS).collect()
     }
 
     /// The number of the first node of a name.

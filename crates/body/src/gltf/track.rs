@@ -1,9 +1,15 @@
 //! Values over time in a clip of a glTF file: samplers and their interpolation, in double precision.
 
-use glam::{DQuat, DVec4};
+use glam::{DQuat, DVec3, DVec4};
 use strandline_base::math;
 
 use crate::teleports::Teleports;
+
+/// A third of the rotation \[rad\] and of the speed \[rad/s\] of a jump of the head, which up to three nodes make together.
+const FAST_TURN: f64 = std::f64::consts::PI / 9.0;
+const FAST: f64 = 40.0 / 3.0;
+/// Time \[s\] between keys from which on no way between them is looked at: 100 m at the speed of a jump.
+const SLOW: f64 = 4.0;
 
 /// Property of a node that a track moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,6 +59,33 @@ impl Track {
     /// The value itself of a key.
     pub fn value(&self, key: usize) -> &[f32] {
         self.part(key, usize::from(self.way == Way::Cubic))
+    }
+
+    /// Spans \[s\] between two keys of a rotation or a translation that are far apart: by more than 20 degrees at more than 13
+    /// rad/s, or by a tenth of all the way from the first key. A node of several that together make a jump has such keys.
+    pub fn fast_spans(&self) -> impl Iterator<Item = [f64; 2]> {
+        let number = |key: usize, component: usize| f64::from(self.value(key)[component]);
+        let place =
+            move |key: usize| DVec3::from_array(std::array::from_fn(|component| number(key, component)));
+        let of = |property: Property| self.property == property;
+        let farthest = (0..if of(Property::Translation) { self.times.len() } else { 0 })
+            .map(|key| place(key).distance(place(0)))
+            .fold(0.0, f64::max);
+        (1..self.times.len()).filter_map(move |key| {
+            let seconds = self.times[key] - self.times[key - 1];
+            let is_fast = match self.property {
+                Property::Rotation => {
+                    let [from, to] = [key - 1, key].map(|key| rotation(self.value(key)));
+                    let turn = 2.0 * math::acos(from.dot(to).abs().min(1.0));
+                    turn > FAST_TURN && turn > FAST * seconds
+                }
+                Property::Translation => {
+                    place(key).distance(place(key - 1)) > 0.1 * farthest && seconds < SLOW
+                }
+                Property::Scale | Property::Weights => false,
+            };
+            is_fast.then_some([self.times[key - 1], self.times[key]])
+        })
     }
 
     /// Writes the value at a time \[s\]; the first and the last one are held outside, and that before a mark until it.
@@ -162,6 +195,34 @@ mod tests {
         for time in [1.0, 1.3, 2.0, 2.7, 3.0] {
             assert!((sampled(&cubic, time)[0] - 2.0 * time).abs() < 1e-12, "{time}");
         }
+    }
+
+    #[test]
+    fn keys_far_apart_are_found() {
+        let half = std::f32::consts::FRAC_1_SQRT_2;
+        let turns = Track {
+            node: 0,
+            property: Property::Rotation,
+            way: Way::Linear,
+            times: vec![0.0, 0.04, 0.08, 1.0],
+            values: [
+                [0.0, 0.0, 0.0, 1.0],
+                [0.0, 0.1, 0.0, 0.995],
+                [0.0, half, 0.0, -half],
+                [0.0, 0.0, 0.0, 1.0],
+            ]
+            .concat(),
+            width: 4,
+        };
+        assert_eq!(
+            turns.fast_spans().collect::<Vec<_>>(),
+            [[0.04, 0.08]],
+            "12 degrees, and 90 in 0.9 s, are not"
+        );
+        let (property, width) = (Property::Translation, 3);
+        let values = [[0.0; 3], [0.5, 0.0, 0.0], [9.0, 0.0, 0.0], [9.5, 0.0, 0.0]].concat();
+        let moves = Track { property, width, values, ..turns };
+        assert_eq!(moves.fast_spans().collect::<Vec<_>>(), [[0.04, 0.08]]);
     }
 
     #[test]

@@ -77,6 +77,11 @@ impl Mannequin {
         GRIDS.get(key, || DistanceGrid::from_field(self, spacing, padding))
     }
 
+    /// Build and eyes.
+    pub(crate) fn person(&self) -> (Build, Eyes) {
+        (self.build, self.eyes)
+    }
+
     /// True where the eyeballs show.
     pub(super) fn has_open_eyes(&self) -> bool {
         self.eyes == Eyes::Open

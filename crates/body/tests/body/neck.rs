@@ -1,11 +1,12 @@
 //! The neck of the built-in bust: what stays, what follows, and how well its rigid parts stand for the bent skin.
 
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use glam::{Quat, Vec3};
 use strandline_base::math;
 use strandline_body::{
-    BodyFrame, Carrier, DistanceGrid, Mannequin, Mesh, MovedSkin, Neck, Pose, SignedDistance,
+    BodyFrame, Carrier, Collider, CommonCaps, DistanceGrid, Mannequin, Mesh, MovedSkin, Neck, Pose, Shape,
+    SignedDistance,
 };
 
 /// The largest angles of the built-in motions, and a chin on the chest \[degrees\]: pitch, yaw, roll.
@@ -178,6 +179,48 @@ fn planes_of_parts_tell_no_more_than_their_distance() {
         }
     }
     assert!(2 * told > all, "{told} of {all}");
+}
+
+/// The planes about all parts of the neck are never farther than the skin of a part, and tell of most of the head that all
+/// are far.
+#[test]
+fn planes_about_all_parts_hold_each() {
+    let solid = |(part, carrier)| Collider::new(Shape::Grid(Arc::new(part)), carrier, 0.3).unwrap();
+    let colliders: Vec<Collider> = neck().solids(&BUST).into_iter().map(solid).collect();
+    for bend in BENDS {
+        let ([skin, normals], frame) = (skin(bend), frame(bend));
+        let pose = |collider: &Collider| match collider.carrier {
+            Carrier::Piece(piece) => frame.piece(usize::from(piece)),
+            Carrier::World | Carrier::Moved(_) => Pose::IDENTITY,
+        };
+        let common = CommonCaps::of(&colliders, |collider| [Pose::IDENTITY, pose(collider)]).unwrap();
+        assert_eq!(common.parts, 2..8);
+        let parts = &colliders[common.parts.clone()];
+        let on_parts: Vec<Vec3> = parts
+            .iter()
+            .flat_map(|part| {
+                let is_own = |place: &&Vec3| part.shape.caps().unwrap().beyond(**place) <= 0.0;
+                MESH.positions.iter().filter(is_own).step_by(5).map(|place| pose(part).point(*place))
+            })
+            .collect();
+        let head = frame.world_from_head();
+        let (mut told, mut all) = (0, 0);
+        for (index, place) in skin.iter().enumerate().step_by(97) {
+            let point = head.point(*place + normals[index] * (0.004 * (index % 5) as f32));
+            let nearest = on_parts.iter().map(|place| place.distance(point)).fold(f32::INFINITY, f32::min);
+            let beyond = common.beyond(point);
+            assert!(beyond <= nearest + 1e-5, "{bend:?} {point}: {beyond} beyond, {nearest}");
+            (told, all) = (told + usize::from(beyond > 0.01), all + 1);
+        }
+        assert!(2 * told > all, "{bend:?}: {told} of {all}");
+        // A point that rests on a part moves no farther than the bounds say.
+        for (part, start) in
+            parts.iter().zip([Vec3::new(0.05, -0.1, 0.08), Vec3::new(-0.3, 0.1, -0.2)].iter().cycle())
+        {
+            let way = pose(part).point(*start).distance(*start);
+            assert!(way <= common.way + common.turn * start.distance(common.middle), "{bend:?} {start}");
+        }
+    }
 }
 
 #[test]

@@ -16,6 +16,7 @@ use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
 use super::obstacles::Obstacles;
+use super::parts::{Parts, beyond};
 use super::planes::{MOST_DEPTH, Plane, Rider, carriers};
 use super::touch::Touch;
 use super::way::{Seen, met};
@@ -72,6 +73,8 @@ fn pose(frame: &BodyFrame, carrier: Carrier) -> Pose {
 pub struct Solids<'a> {
     groups: Vec<Group<'a>>,
     obstacles: &'a Obstacles<'a>,
+    /// The parts of a neck among the groups.
+    parts: Option<Parts<'a>>,
     points: usize,
 }
 
@@ -81,8 +84,6 @@ pub(super) struct Group<'a> {
     skin: Option<&'a PosedSkin>,
     /// Planes between which a part of the bust lies, where it is the only one.
     caps: Option<Caps>,
-    /// Distance of two planes over the difference of their levels.
-    steep: f32,
     pub(super) carrier_from_world: Rigid,
     pub(super) world_from_carrier: Rigid,
     /// Carries what rests on the solid from the start to the end of the step.
@@ -105,7 +106,6 @@ impl<'a> Solids<'a> {
                     [(part, None)] => part.shape.caps().copied(),
                     _ => None,
                 },
-                steep: 1.0 / Caps::steepness(),
                 colliders,
                 carrier_from_world: Rigid::new(&end.inverse()),
                 world_from_carrier: Rigid::new(&end),
@@ -113,8 +113,15 @@ impl<'a> Solids<'a> {
                 part_moves: Vec::new(),
             }
         };
-        let groups = carriers(obstacles.colliders).into_iter().map(group).collect();
-        Self { groups, obstacles, points }
+        let groups: Vec<Group> = carriers(obstacles.colliders).into_iter().map(group).collect();
+        let parts = obstacles.common().and_then(|common| {
+            let is_part = |caps: &Caps| caps.is_bounded();
+            let first = groups.iter().position(|group| group.caps.as_ref().is_some_and(is_part))?;
+            let caps: Vec<Caps> =
+                groups[first..].iter().map_while(|group| group.caps.filter(is_part)).collect();
+            Some(Parts::new(common, first, &caps))
+        });
+        Self { groups, obstacles, parts, points }
     }
 
     /// Places the colliders for a step in a number of parts.
@@ -148,18 +155,35 @@ impl<'a> Solids<'a> {
         self.groups.iter().enumerate().filter_map(|(index, group)| Some((index, group.skin?)))
     }
 
+    /// The groups at which points of one index look, in their order: see [`Parts::order`].
+    #[inline(always)]
+    fn order(&self, position: Vec3x8, start: Option<Vec3x8>, reach: f32x8) -> impl Iterator<Item = usize> {
+        let count = self.groups.len();
+        let (around, [from, below]) = match &self.parts {
+            Some(parts) => (parts.groups.clone(), parts.order(position, start, reach)),
+            None => (count..count, [0..0, 0..0]),
+        };
+        (0..around.start).chain(from).chain(below).chain(around.end..count)
+    }
+
     /// The solid nearest to the points of one index; `None` if no free lane is near a solid.
     pub fn touch(&self, planes: &mut [Plane], point: usize, query: Query) -> Option<Touch> {
         let Query { position, start, margin, free, care, part } = query;
         let mut touch: Option<Touch> = None;
         let (planes, riders) = planes.split_at_mut(self.groups.len() * self.points);
-        for (group, planes) in self.groups.iter().zip(planes.chunks_mut(self.points)) {
-            if group.is_beyond(position, start, margin + splat(care.near)) {
+        let widest = margin + splat(care.near);
+        for number in self.order(position, start, widest) {
+            let group = &self.groups[number];
+            // A part that is farther than the plane of another solid does not count.
+            let reach = match &touch {
+                Some(nearest) if group.caps.is_some() => widest.fast_min(nearest.height(position) + margin),
+                _ => widest,
+            };
+            if group.is_beyond(position, start, reach) {
                 continue;
             }
-            let plane = &mut planes[point];
+            let plane = &mut planes[number * self.points + point];
             let mut rider = riders.get_mut(point).filter(|_| group.skin.is_some());
-            let reach = margin + splat(care.near);
             let look = group.refresh(plane, rider.as_deref_mut(), position, start, reach, care.stale);
             let near = look.near & free;
             if !near.any() {
@@ -199,19 +223,24 @@ impl<'a> Solids<'a> {
         counted: impl Fn(usize) -> bool,
     ) -> f32 {
         let mut deepest = 0.0_f32;
-        for (number, group) in self.groups.iter().enumerate() {
+        for number in self.order(position, None, splat(0.0)) {
+            let group = &self.groups[number];
             if group.skin.is_some() {
                 let plane = &planes[number * self.points + index];
                 let rider = planes.get(self.groups.len() * self.points + index);
                 deepest = deepest.max(group.depth_on(position, plane, rider, &counted));
                 continue;
             }
-            if group.is_beyond(position, None, splat(0.0)) {
+            let place = group.carrier_from_world.points(position);
+            let between =
+                group.caps.map_or(u32::MAX, |caps| beyond(&caps, place).simd_le(splat(0.0)).to_bitmask());
+            if between == 0 {
                 continue;
             }
             let mut local = Vec3Lanes::default();
-            group.carrier_from_world.points(position).store(&mut local);
-            for point in (0..LANES).filter(|lane| counted(*lane)).map(|lane| local.get(lane)) {
+            place.store(&mut local);
+            let is_looked_at = |lane: &usize| between & (1 << lane) != 0 && counted(*lane);
+            for point in (0..LANES).filter(is_looked_at).map(|lane| local.get(lane)) {
                 // A lower bound shows that most points are outside; the surface is not searched for those.
                 let near = group
                     .colliders
@@ -246,13 +275,7 @@ impl Group<'_> {
     #[inline(always)]
     fn is_beyond(&self, position: Vec3x8, start: Option<Vec3x8>, reach: f32x8) -> bool {
         let Some(caps) = self.caps else { return false };
-        let Vec3x8 { x, y, z } = self.carrier_from_world.points(position);
-        let level = y + z * splat(Caps::SLOPE);
-        let [low, high] = caps.levels.map(splat);
-        let [back, front] = caps.depths.map(splat);
-        let along = (level - high).fast_max(low - level) * splat(self.steep);
-        let beyond =
-            along.fast_max(x.abs() - splat(caps.half_width)).fast_max((z - front).fast_max(back - z));
+        let beyond = beyond(&caps, self.carrier_from_world.points(position));
         if !beyond.simd_gt(reach).all() {
             return false;
         }

@@ -3,6 +3,7 @@
 
 pub(crate) mod contacts;
 mod obstacles;
+mod parts;
 pub(crate) mod planes;
 mod riders;
 pub(crate) mod touch;

@@ -1,9 +1,10 @@
 //! Colliders placed in the world for the duration of a step.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::Vec3;
-use strandline_body::{BodyFrame, Carrier, Collider, Places, Pose, PosedSkin, Sides};
+use strandline_body::{BodyFrame, Carrier, Collider, CommonCaps, Places, Pose, PosedSkin, Sides};
 
 /// The colliders at the end of a step, and their motion through it.
 #[derive(Clone)]
@@ -20,6 +21,8 @@ pub struct Obstacles<'a> {
     pieces: Vec<Placed>,
     /// For each collider its skin, where that moves by itself.
     skins: Skins,
+    /// Planes about the parts of a neck.
+    common: Option<CommonCaps>,
 }
 
 /// For each collider its skin, where that moves by itself.
@@ -64,8 +67,13 @@ impl<'a> Obstacles<'a> {
             let (start, end) = (start.piece(piece), end.piece(piece));
             Placed { start, end, piece_from_world: end.inverse() }
         };
-        let pieces = (0..count).map(place).collect();
-        Self { colliders, start, end, time_step, pieces, skins }
+        let pieces: Vec<Placed> = (0..count).map(place).collect();
+        let poses = |collider: &Collider| match piece(collider).checked_sub(1) {
+            Some(piece) => [pieces[piece].start, pieces[piece].end],
+            None => [Pose::IDENTITY; 2],
+        };
+        let common = CommonCaps::of(colliders, poses);
+        Self { colliders, start, end, time_step, pieces, skins, common }
     }
 
     /// For each collider its skin, where that moves by itself.
@@ -83,6 +91,18 @@ impl<'a> Obstacles<'a> {
         self.colliders.iter().zip(self.skins.iter().map(Option::as_deref))
     }
 
+    /// Planes about the parts of a neck, where there are such.
+    pub(super) fn common(&self) -> Option<&CommonCaps> {
+        self.common.as_ref()
+    }
+
+    /// The parts of a neck among the colliders, and how far \[m\] a point lies beyond all of them at the end of the step.
+    #[inline]
+    fn beyond_parts(&self, point: Vec3) -> (Range<usize>, f32) {
+        let none = (0..0, f32::NEG_INFINITY);
+        self.common.as_ref().map_or(none, |common| (common.parts.clone(), common.beyond(point)))
+    }
+
     /// A point in the space of a collider's carrier.
     #[inline]
     fn local(&self, collider: &Collider, point: Vec3) -> Vec3 {
@@ -98,7 +118,11 @@ impl<'a> Obstacles<'a> {
     /// the solid's index; `None` without colliders. World space.
     pub fn nearest(&self, point: Vec3) -> Option<(f32, Vec3, usize)> {
         let mut nearest: Option<(f32, Vec3, usize)> = None;
+        let (parts, beyond) = self.beyond_parts(point);
         for (index, (collider, skin)) in self.solids().enumerate() {
+            if parts.contains(&index) && nearest.is_some_and(|(least, ..)| beyond >= least.max(0.0)) {
+                continue;
+            }
             let local = self.local(collider, point);
             if nearest.is_some_and(|(least, ..)| collider.shape.is_beyond(local, least.max(0.0))) {
                 continue;
@@ -129,7 +153,11 @@ impl<'a> Obstacles<'a> {
     /// As [`Self::at_least`]; 0 or the bound where the bound is at most `enough` \[m\].
     pub fn at_least_or(&self, point: Vec3, before: &mut u32, enough: f32) -> f32 {
         let mut least = f32::INFINITY;
-        for (collider, skin) in self.solids() {
+        let (parts, beyond) = self.beyond_parts(point);
+        for (index, (collider, skin)) in self.solids().enumerate() {
+            if parts.contains(&index) && beyond >= least {
+                continue;
+            }
             let local = self.local(collider, point);
             let found = match skin {
                 Some(skin) => {
@@ -149,7 +177,11 @@ impl<'a> Obstacles<'a> {
     /// [`Self::nearest`]. World space. `before` is as in [`Self::at_least`].
     pub fn distance(&self, point: Vec3, before: &mut u32) -> f32 {
         let mut nearest = f32::INFINITY;
-        for (collider, skin) in self.solids() {
+        let (parts, beyond) = self.beyond_parts(point);
+        for (index, (collider, skin)) in self.solids().enumerate() {
+            if parts.contains(&index) && beyond >= nearest.max(0.0) {
+                continue;
+            }
             let local = self.local(collider, point);
             let distance = match skin {
                 Some(skin) => {

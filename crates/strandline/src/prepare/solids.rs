@@ -42,13 +42,14 @@ pub(super) fn solids(loading: &mut Loading) -> Result<(), Error> {
     let scene = &loading.scene;
     let neck = loading.mesh.as_ref().and_then(|mesh| mesh.neck);
     if let Some(shape) = loading.shape.clone().filter(|_| is_solid) {
-        let parts = match (&shape, neck) {
-            (Shape::Grid(bust), Some(neck)) => neck.solids(bust),
-            _ => Vec::new(),
+        let parts = match neck {
+            Some(neck) => {
+                let mannequin = Mannequin::of(scene.body.build, scene.body.eyes);
+                neck.solids_of(&mannequin, scene.body.spacing, DISTANCE_PADDING)?.to_vec()
+            }
+            None => vec![(shape, Carrier::HEAD)],
         };
-        let parts = parts.into_iter().map(|(part, carrier)| (Shape::Grid(Arc::new(part)), carrier));
-        let whole = (parts.len() == 0).then_some((shape, Carrier::HEAD));
-        for (shape, carrier) in whole.into_iter().chain(parts) {
+        for (shape, carrier) in parts {
             loading.colliders.push(Collider::new(shape, carrier, scene.body.friction)?);
         }
     }
@@ -82,7 +83,7 @@ fn mannequin(loading: &mut Loading) -> Result<(), Error> {
         grid_shape(loading, grid)
     };
     let (scene, pivot) = (&loading.scene, mannequin.neck_pivot());
-    let bends = scene.motion.neck && !scene.body.exact;
+    let bends = scene.motion.bends() && !scene.body.exact;
     let neck = bends.then(|| Neck::new(scene.motion.pivot.unwrap_or(pivot)));
     (loading.mesh, loading.pivot) = (Some(Mesh { neck, ..mannequin.figure() }), Some(pivot));
     loading.shape = Some(shape);

@@ -111,7 +111,8 @@ impl Scene {
             film: FilmSection { settle: FilmSection::SETTLE, ..FilmSection::default() },
             ..Self::default()
         };
-        scene.motion.name = MotionName::Shake;
+        // Its head and shoulders move as one.
+        (scene.motion.name, scene.motion.neck) = (MotionName::Shake, Some(false));
         scene.look.dress(Preset::Thesis);
         scene.look.follow_strands = 16;
         scene.dress_thesis();

@@ -1,9 +1,7 @@
 //! Jumps of a body: teleports and cuts, over which hair is carried.
 
+use crate::body::{BodyFrame, Leap};
 use glam::Vec3;
-use strandline_base::math;
-
-use crate::body::BodyFrame;
 
 /// A jump of the body, over which hair was carried.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,32 +12,25 @@ pub struct Jump {
     pub what: String,
 }
 
-/// Least rotation \[rad\] and way \[m\] of a jump, and the mean speeds \[rad/s\] and \[m/s\] above which they are one: heads
-/// of persons turn by less than 20 rad/s and move at less than 10 m/s.
-const LEAST_TURN: f32 = std::f32::consts::FRAC_PI_3;
-const LEAST_WAY: f32 = 0.5;
-const TURN_SPEED: f64 = 40.0;
-const WAY_SPEED: f64 = 25.0;
-
 /// The jump from one frame of the body to another, human-readable; `None` where it moves there within `seconds` without
 /// a mark between them. `root` \[m\], head space, is a place on the head: where that lies far from the origin of its file,
 /// a small turn about the neck moves the origin by metres.
 pub(super) fn jump(from: &BodyFrame, to: &BodyFrame, root: Vec3, seconds: f64) -> Option<String> {
     let [start, end] = [from, to].map(BodyFrame::world_from_head);
-    let way = start.point(root).distance(end.point(root));
-    let turn = 2.0 * math::asin((start.rotation.conjugate() * end.rotation).xyz().length().min(1.0));
-    let is_turn = turn > LEAST_TURN && f64::from(turn) > TURN_SPEED * seconds;
-    let is_way = way > LEAST_WAY && f64::from(way) > WAY_SPEED * seconds;
+    let leap = Leap::new(&start, &end, root);
+    let is_far = leap.is_jump(seconds);
     let is_marked = from != to && from.jumps_to(to);
-    (is_turn || is_way || is_marked).then(|| {
-        let degrees = turn.to_degrees();
-        let why = if is_marked { ", as marked" } else { "" };
+    (is_far || is_marked).then(|| {
+        let (way, degrees) = (leap.way, leap.turn.to_degrees());
+        let why = if is_marked && !is_far { ", as marked" } else { "" };
         format!("the body jumps by {way:.2} m and {degrees:.0} degrees{why}: hair is carried with it")
     })
 }
 
 #[cfg(test)]
 mod tests {
+    use strandline_base::math;
+
     use super::*;
     use crate::Pose;
 

@@ -12,6 +12,7 @@ mod host_device;
 mod keyed_solids;
 mod live;
 mod moving;
+mod neck;
 mod outside;
 mod pose;
 mod readme;

@@ -39,6 +39,35 @@ fn jumps_are_listed_and_vertices_at_no_place_are_told_once() {
     assert!(what.contains("jumps by 0.30 m and 0 degrees, as marked"), "{what}");
 }
 
+/// A head that turns between two samples of 24 in a second, in frames of 1/120 s: by half a turn, which rigs flip, and by as
+/// much as a person who shakes it does at 20 rad/s.
+#[test]
+fn a_turn_between_two_samples_is_a_jump_where_frames_are_finer() {
+    let mesh = Mesh::load(&bust(), 1.0).unwrap();
+    let played = |degrees: f32| {
+        let turn = Quat::from_rotation_y(degrees.to_radians());
+        let turned = mesh.positions.iter().map(|place| turn * *place).collect();
+        let times = vec![0.1, 0.1 + 1.0 / 24.0];
+        let motion = VertexMotion::sampled(times, vec![mesh.positions.clone(), turned]).unwrap();
+        let sources = Sources::default().with_mesh("bust", mesh.clone()).with_motion("bust", motion);
+        let mut memory = scene("nod");
+        (memory.body.file, memory.body.clip) = (Some("bust".into()), None);
+        memory.film.frames_per_second = 120.0;
+        let mut hair = Hair::from_sources(&memory, &sources).unwrap();
+        let mut fastest = 0.0_f32;
+        for frame in 0..24 {
+            let reports = hair.play(frame).unwrap();
+            fastest = reports.iter().map(|report| report.speed_max).fold(fastest, f32::max);
+        }
+        (fastest, hair.take_notes().join("\n"))
+    };
+    let (carried, notes) = played(180.0);
+    assert!(notes.contains("and 180 degrees: hair is carried with it"), "{notes}");
+    assert!(carried < 0.5, "{carried} m/s");
+    let (pulled, notes) = played(48.0);
+    assert!(!notes.contains("jumps") && pulled > 1.0, "{pulled} m/s: {notes}");
+}
+
 #[test]
 fn a_loop_that_does_not_close_is_told() {
     let notes = |change: fn(&mut Scene)| {
