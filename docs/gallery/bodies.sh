@@ -1,7 +1,7 @@
 #!/bin/sh
 # Makes the strips of bodies that move, docs/gallery/{smile,look,nod,shrug,animal}.png: contact sheets of four frames of the scenes in
-# docs/gallery/bodies, and every sixth frame of the animal's example; docs/gallery/animal.webp is its whole stride, shrug.webp the shrug at 24 frames a
-# second.
+# docs/gallery/bodies, and every sixth frame of the animal's example; the .webp files are the same at 24 frames
+# a second.
 #   docs/gallery/bodies.sh
 # STRANDLINE_PROGRAM names a program that is built already. Needs ffmpeg with libwebp.
 set -eu
@@ -20,6 +20,10 @@ done
 ffmpeg -v error -y -i out/animal/film/frame_%04d.png -vf "select='eq(mod(n,6),5)',tile=4x1" -frames:v 1 docs/gallery/animal.png
 ffmpeg -v error -y -framerate 24 -i out/animal/film/frame_%04d.png -c:v libwebp_anim -q:v 90 -compression_level 6 -loop 0 \
     docs/gallery/animal.webp
-"$program" render --scene docs/gallery/bodies/shrug.toml --frames 40 --fps 24 --out out/shrug/film
-ffmpeg -v error -y -framerate 24 -i out/shrug/film/frame_%04d.png -c:v libwebp_anim -q:v 85 -compression_level 6 -loop 0 \
-    docs/gallery/shrug.webp
+# Frames of two seconds or a little more: the whole clip.
+for film in smile:48 look:64 nod:48 shrug:40; do
+    name=${film%:*}
+    "$program" render --scene "docs/gallery/bodies/$name.toml" --frames "${film#*:}" --fps 24 --out "out/$name/film"
+    ffmpeg -v error -y -framerate 24 -i "out/$name/film/frame_%04d.png" -c:v libwebp_anim -q:v 92 -compression_level 6 -loop 0 \
+        "docs/gallery/$name.webp"
+done

@@ -458,10 +458,9 @@ class Motion(TypedDict, total=False):
     Allowed: 3 numbers of -360 to 360 degrees."""
 
     neck: bool
-    """Bends the neck of the built-in bust, so that its shoulders stay; else the bust moves as one. Without this it
-    bends under every motion but "still" and "file", whose head may walk about. Beyond 75 degrees the shoulders
-    follow. It is a setting of the load: a window keeps the neck that it began with. The exact mannequin never bends.
-    Allowed: true or false."""
+    """Bends the neck of the built-in bust, so that its shoulders stay; without this the bust moves as one, which
+    costs less. Beyond 75 degrees the shoulders follow. It is a setting of the load: a window keeps the neck that it
+    began with, and says so. The exact mannequin never bends. Allowed: true or false."""
 
     interpolation: str
     """The way from pose to pose, where a pose does not name its own. Allowed: one of smooth, linear, hold."""

@@ -126,7 +126,7 @@ def test_marks_of_a_body_carry_its_hair_over_a_cut(groom, ball):
         for frame in simulation.frames(4):
             rest = np.array(frame.points) if rest is None else rest
             last = np.array(frame.points)
-        assert sum("as marked: hair is carried" in note for note in simulation.take_notes()) == 1
+        assert sum(": hair is carried" in note for note in simulation.take_notes()) == 1
     assert np.abs(last - np.asarray(rest) - (1, 0, 0)).max() < 0.01
     with pytest.raises(Error, match="teleports is no list of finite times"):
         Body(ball.vertices, ball.faces, motion=aside, teleports=[np.nan])

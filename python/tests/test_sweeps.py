@@ -109,7 +109,9 @@ def test_pipes_that_a_broken_pool_closes_are_a_broken_pool(tmp_path, monkeypatch
             until = time.monotonic() + 20
             while not pool._call_queue._reader.closed and time.monotonic() < until:
                 time.sleep(0.01)
-            raise ValueError("bad value(s) in fds_to_keep")
+            # A Python that closes nothing before this ends has no such error.
+            if pool._call_queue._reader.closed:
+                raise ValueError("bad value(s) in fds_to_keep")
         begin(pool)
 
     monkeypatch.setattr(ProcessPoolExecutor, "_spawn_process", begin_late)

@@ -64,7 +64,8 @@ impl Page {
     fn load(mut wanted: Wanted) -> Result<Self, String> {
         wanted.size = wanted.size.map(|side| side.clamp(SIDES[0], SIDES[1]));
         let mut scene = Scene::demo();
-        scene.motion.name = MotionName::Turn;
+        // Motions change while hair is shown, and the neck is one of the load.
+        (scene.motion.name, scene.motion.neck) = (MotionName::Turn, true);
         [scene.picture.width, scene.picture.height] = wanted.size;
         let mut own = Own::OFF;
         let mut settings = Vec::new();

@@ -91,7 +91,7 @@ impl RecordedMotion {
             let pose = Pose { rotation: rotation.as_quat(), translation: (self.scale * place).as_vec3() };
             if pose.rotation.is_finite() && pose.translation.is_finite() { pose } else { Pose::IDENTITY }
         };
-        let leaps = Leaps::find(spans, 1.0, Vec3::ZERO, pose);
+        let leaps = Leaps::find(spans, Vec3::ZERO, pose);
         Self { leaps, ..self }
     }
 

@@ -79,14 +79,15 @@ impl Moving {
         let pose = |time: f64| {
             let moved = self.motion.places(time, head);
             let placed = own.iter().zip(head).zip(moved).map(|((rest, index), moved)| {
-                *rest + self.turn * (self.scale * (moved - self.origin[*index as usize]))
+                let place = *rest + self.turn * (self.scale * (moved - self.origin[*index as usize]));
+                if is_place(place) { place } else { *rest }
             });
             let pose = rigid_fit(&own, &placed.collect::<Vec<_>>(), &all);
             if pose.rotation.is_finite() && pose.translation.is_finite() { pose } else { Pose::IDENTITY }
         };
         let mut spans = self.motion.spans();
         spans.retain(|span| self.motion.marks().is_after(*span, span[1]).is_none());
-        let leaps = Leaps::find(spans, self.playback.speed, place, pose);
+        let leaps = Leaps::find(spans, place, pose);
         Self { leaps, ..self }
     }
 
@@ -120,7 +121,7 @@ impl Moving {
         for ((rest, origin), moved) in rest[self.range()].iter_mut().zip(&*self.origin).zip(moved) {
             // Vertices that do not move stay to the bit.
             let place = *rest + self.turn * (self.scale * (moved - *origin));
-            if place.is_finite() && place.abs().max_element() < FARTHEST {
+            if is_place(place) {
                 *rest = place;
             } else {
                 held_count += 1;
@@ -128,6 +129,11 @@ impl Moving {
         }
         held_count
     }
+}
+
+/// True for what may be a place in head space \[m\].
+fn is_place(place: Vec3) -> bool {
+    place.is_finite() && place.abs().max_element() < FARTHEST
 }
 
 impl SkinMotion {
@@ -171,7 +177,12 @@ impl SkinMotion {
         playback: Playback,
         placing: (f32, Quat),
     ) -> Result<Self, BodyError> {
-        let part = Moving::new(motion, playback, (first, self.rest.len()), placing)?;
+        let mut part = Moving::new(motion, playback, (first, self.rest.len()), placing)?;
+        // Clothes of the same clip jump with the body.
+        let body = &self.parts[0];
+        if part.playback == body.playback && part.motion.end() == body.motion.end() {
+            part.leaps = body.leaps.clone();
+        }
         let own = part.range();
         if let Some(other) =
             self.parts.iter().map(Moving::range).find(|other| own.start < other.end && other.start < own.end)

@@ -177,7 +177,7 @@ fn sequence(path: &Path) -> Result<Vec<(u64, PathBuf)>, BodyError> {
                 let digits = digits.filter(|digits| digits.bytes().all(|letter| letter.is_ascii_digit()));
                 digits.and_then(|digits| digits.parse().ok())
             }
-            None => is_obj(&file).then_some(0),
+            None => is_obj(&file).then(|| trailing_number(&file)),
         };
         files.extend(number.map(|number: u64| (number, file)));
         if files.len() > MOST_FILES {
@@ -190,6 +190,13 @@ fn sequence(path: &Path) -> Result<Vec<(u64, PathBuf)>, BodyError> {
     }
     files.dedup_by_key(|file| file.0);
     Ok(files)
+}
+
+/// The digits at the end of a name as a number: 10 comes behind 2 without leading zeros too. 0 without digits.
+fn trailing_number(file: &Path) -> u64 {
+    let name = file.file_stem().and_then(|name| name.to_str()).unwrap_or_default();
+    let digits = name.len() - name.bytes().rev().take_while(u8::is_ascii_digit).count();
+    name[digits..].parse().unwrap_or(0)
 }
 
 /// The arrays of a file that tell of a motion.

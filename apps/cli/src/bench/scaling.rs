@@ -127,8 +127,6 @@ fn scene(strand_count: usize, points: usize, cells: u32, frames: u32) -> Scene {
     scene.groom.points_per_strand = points as u32;
     scene.simulation.volume.cells = [cells; 3];
     scene.film.frames = frames;
-    // One rigid head, as in other programs.
-    scene.motion.neck = Some(false);
     // Nothing is drawn: follow strands would take memory alone.
     scene.look.follow_strands = 1;
     scene

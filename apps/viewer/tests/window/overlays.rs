@@ -95,6 +95,7 @@ fn a_load_is_told(scene: Scene) -> bool {
     let (mut stages, mut seen, mut told) = (Vec::new(), false, false);
     while window.app().shown().is_none() {
         window.pass(Vec::new(), None);
+        assert_eq!(window.app().error(), None);
         if let Some((stage, has_hair)) = window.app().load_stage() {
             if stages.last() != Some(&stage) {
                 stages.push(stage);

@@ -282,7 +282,11 @@ impl Rig {
 
     /// Spans \[s\] between two keys of a node that are far apart, the first ones of many.
     pub fn fast_spans(&self) -> Vec<[f64; 2]> {
-        self.tracks.iter().flat_map(Track::fast_spans).take(MOST_SPANS).collect()
+        let mut spans: Vec<[f64; 2]> = self.tracks.iter().flat_map(Track::fast_spans).collect();
+        spans.sort_by(|one, other| one[0].total_cmp(&other[0]).then(one[1].total_cmp(&other[1])));
+        spans.dedup();
+        spans.truncate(MOST_SPANS);
+        spans
     }
 
     /// The number of the first node of a name.

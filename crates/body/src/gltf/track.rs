@@ -8,8 +8,10 @@ use crate::teleports::Teleports;
 /// A third of the rotation \[rad\] and of the speed \[rad/s\] of a jump of the head, which up to three nodes make together.
 const FAST_TURN: f64 = std::f64::consts::PI / 9.0;
 const FAST: f64 = 40.0 / 3.0;
-/// Time \[s\] between keys from which on no way between them is looked at: 100 m at the speed of a jump.
-const SLOW: f64 = 4.0;
+/// Time \[s\] between keys from which on no way between them is looked at: everything is held through a jump.
+const SLOW: f64 = 0.2;
+/// Share of the largest coordinate that is rounding.
+const ROUNDING: f64 = 1e-4;
 
 /// Property of a node that a track moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,7 +64,8 @@ impl Track {
     }
 
     /// Spans \[s\] between two keys of a rotation or a translation that are far apart: by more than 20 degrees at more than 13
-    /// rad/s, or by a tenth of all the way from the first key. A node of several that together make a jump has such keys.
+    /// rad/s, or by a tenth of all the way from the first key. A node of several that together make a jump has such keys. Steps
+    /// and keys of one time are cuts by themselves.
     pub fn fast_spans(&self) -> impl Iterator<Item = [f64; 2]> {
         let number = |key: usize, component: usize| f64::from(self.value(key)[component]);
         let place =
@@ -71,7 +74,10 @@ impl Track {
         let farthest = (0..if of(Property::Translation) { self.times.len() } else { 0 })
             .map(|key| place(key).distance(place(0)))
             .fold(0.0, f64::max);
-        (1..self.times.len()).filter_map(move |key| {
+        let largest = if farthest > 0.0 { place(0).length().max(farthest) } else { 0.0 };
+        let is_cut = move |key: usize| self.times.get(key + 1) == Some(&self.times[key]);
+        let keys = if self.way == Way::Step { 1..1 } else { 1..self.times.len() };
+        keys.filter(move |key| !is_cut(*key)).filter_map(move |key| {
             let seconds = self.times[key] - self.times[key - 1];
             let is_fast = match self.property {
                 Property::Rotation => {
@@ -80,7 +86,8 @@ impl Track {
                     turn > FAST_TURN && turn > FAST * seconds
                 }
                 Property::Translation => {
-                    place(key).distance(place(key - 1)) > 0.1 * farthest && seconds < SLOW
+                    let way = place(key).distance(place(key - 1));
+                    way > 0.1 * farthest && way > ROUNDING * largest && seconds < SLOW
                 }
                 Property::Scale | Property::Weights => false,
             };
@@ -221,8 +228,20 @@ mod tests {
         );
         let (property, width) = (Property::Translation, 3);
         let values = [[0.0; 3], [0.5, 0.0, 0.0], [9.0, 0.0, 0.0], [9.5, 0.0, 0.0]].concat();
-        let moves = Track { property, width, values, ..turns };
-        assert_eq!(moves.fast_spans().collect::<Vec<_>>(), [[0.04, 0.08]]);
+        let mut moves = Track { property, width, values, ..turns };
+        let spans = |track: &Track| track.fast_spans().collect::<Vec<_>>();
+        assert_eq!(spans(&moves), [[0.04, 0.08]]);
+        moves.way = Way::Step;
+        assert!(spans(&moves).is_empty(), "a step is a cut by itself, and all else goes on");
+        (moves.way, moves.times) = (Way::Linear, vec![0.0, 0.04, 3.04, 3.1]);
+        assert!(spans(&moves).is_empty(), "a ride of three seconds");
+        moves.times = vec![0.0, 0.04, 0.08, 0.08];
+        assert!(spans(&moves).is_empty(), "two keys of one time are a cut by themselves");
+        moves.times = vec![0.0, 0.04, 0.08, 1.0];
+        moves.values = [[1.0_f32, 0.0, 0.0], [1.0 + 1e-7, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0; 3]].concat();
+        moves.values.truncate(9);
+        moves.times.truncate(3);
+        assert!(spans(&moves).is_empty(), "rounding");
     }
 
     #[test]

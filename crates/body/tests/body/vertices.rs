@@ -113,13 +113,14 @@ fn an_archive_with_faces_is_a_mesh_in_motion() {
 
 #[test]
 fn files_of_one_topology_are_a_mesh_in_motion() {
-    let folder = tempfile::tempdir().unwrap();
+    let [folder, unpadded] = [(); 2].map(|()| tempfile::tempdir().unwrap());
     let faces = &CUBE_OBJ[CUBE_OBJ.find("f 1").unwrap()..];
     // A file is missing: the motion goes on evenly.
     for (number, frame) in frames(4).iter().enumerate().filter(|(number, _)| *number != 2) {
         let line = |place: &Vec3| format!("v {} {} {}\n", place.x, place.y, place.z);
         let text = frame.iter().map(line).collect::<String>() + faces;
-        std::fs::write(folder.path().join(format!("walk{:02}.obj", number + 9)), text).unwrap();
+        std::fs::write(folder.path().join(format!("walk{:02}.obj", number + 9)), &text).unwrap();
+        std::fs::write(unpadded.path().join(format!("walk{}.obj", number + 9)), &text).unwrap();
     }
     std::fs::write(folder.path().join("walk.txt"), "").unwrap();
     let pattern = folder.path().join("walk%02d.obj");
@@ -128,6 +129,11 @@ fn files_of_one_topology_are_a_mesh_in_motion() {
     check(&mesh, &motion, 2.0, 1.5);
     let (_, of_folder) = Mesh::load_sequence(folder.path(), 2.0).unwrap();
     assert_eq!((of_folder.end(), of_folder.positions(9.0)), (1.0, motion.positions(9.0)));
+    let (_, by_number) = Mesh::load_sequence(unpadded.path(), 2.0).unwrap();
+    assert_eq!(
+        [0.0, 9.0].map(|time| by_number.positions(time)),
+        [0.0, 9.0].map(|time| of_folder.positions(time))
+    );
     std::fs::write(folder.path().join("walk13.obj"), CUBE_OBJ.replace("f 5 6 7 8\n", "")).unwrap();
     let error = Mesh::load_sequence(&pattern, 2.0).unwrap_err().to_string();
     assert!(error.contains("other faces than the first file") && error.contains("walk13.obj"), "{error}");

@@ -83,7 +83,7 @@ fn mannequin(loading: &mut Loading) -> Result<(), Error> {
         grid_shape(loading, grid)
     };
     let (scene, pivot) = (&loading.scene, mannequin.neck_pivot());
-    let bends = scene.motion.bends() && !scene.body.exact;
+    let bends = scene.motion.neck && !scene.body.exact;
     let neck = bends.then(|| Neck::new(scene.motion.pivot.unwrap_or(pivot)));
     (loading.mesh, loading.pivot) = (Some(Mesh { neck, ..mannequin.figure() }), Some(pivot));
     loading.shape = Some(shape);

@@ -111,8 +111,7 @@ impl Scene {
             film: FilmSection { settle: FilmSection::SETTLE, ..FilmSection::default() },
             ..Self::default()
         };
-        // Its head and shoulders move as one.
-        (scene.motion.name, scene.motion.neck) = (MotionName::Shake, Some(false));
+        scene.motion.name = MotionName::Shake;
         scene.look.dress(Preset::Thesis);
         scene.look.follow_strands = 16;
         scene.dress_thesis();

@@ -45,7 +45,7 @@ impl HeadMotion {
             recorded: None,
             is_recorded,
             neck: None,
-            bends: section.bends(),
+            bends: section.neck,
             solids: Arc::default(),
             origin: Vec3::ZERO,
         })

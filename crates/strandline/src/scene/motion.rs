@@ -58,10 +58,10 @@ settings! {
         /// Rotation of the head added to its motion, about the pivot: pitch (about x), yaw (about y),
         /// roll (about z).
         rotation: Vec3 = Vec3::ZERO, in [-360.0, 360.0] "degrees", slider [-70.0, 70.0];
-        /// Bends the neck of the built-in bust, so that its shoulders stay; else the bust moves as one. Without this it bends
-        /// under every motion but "still" and "file", whose head may walk about. Beyond 75 degrees the shoulders follow. It is a setting of
-        /// the load: a window keeps the neck that it began with. The exact mannequin never bends.
-        neck: Option<bool> = None;
+        /// Bends the neck of the built-in bust, so that its shoulders stay; without this the bust moves as one, which costs less. Beyond 75
+        /// degrees the shoulders follow. It is a setting of the load: a window keeps the neck that it began with, and says so. The exact
+        /// mannequin never bends.
+        neck: bool = false;
         /// The way from pose to pose, where a pose does not name its own.
         interpolation: Interpolation = Interpolation::default();
         /// A .bvh, .gltf, .glb or .vrm file with a skeleton; used by "file".
@@ -81,11 +81,6 @@ settings! {
 }
 
 impl MotionSection {
-    /// True where the neck of the built-in bust bends.
-    pub fn bends(&self) -> bool {
-        self.neck.unwrap_or(!matches!(self.name, MotionName::Still | MotionName::File))
-    }
-
     /// The motion itself.
     ///
     /// # Errors

@@ -130,6 +130,11 @@ impl Direction {
         Ok(())
     }
 
+    /// True where the motion would bend a neck that the head does not have.
+    pub fn lacks_neck(&self) -> bool {
+        self.motion.neck && self.head.neck().is_none()
+    }
+
     /// The head that follows another section, in the world.
     ///
     /// # Errors

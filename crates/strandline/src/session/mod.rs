@@ -273,7 +273,10 @@ impl<E: Executor> Session<E> {
             Change::LevelOfDetail(level) => level.validate().map(|()| view.level_of_detail = level)?,
             Change::Picture(settings) => self.set_picture(settings)?,
             Change::Wind(wind) => self.direction.set_wind(wind)?,
-            Change::Motion(motion) => self.direction.set_motion(*motion)?,
+            Change::Motion(motion) => {
+                self.direction.set_motion(*motion)?;
+                self.events.extend(self.stiff_neck().map(Event::Note));
+            }
             Change::Drag(ray) => {
                 let hand = &mut self.direction.hand;
                 *hand = hand.and_then(|hand| ray.at_depth_of(&view.camera, hand)).or(*hand);
@@ -292,6 +295,15 @@ impl<E: Executor> Session<E> {
             }
         }
         Ok(())
+    }
+
+    /// A note where a motion would bend the neck of the built-in bust, which was loaded with another.
+    fn stiff_neck(&self) -> Option<String> {
+        let body = &self.scene.body;
+        let is_bust = self.view.body().is_some() && body.file.is_none() && !body.exact;
+        (is_bust && self.direction.lacks_neck()).then(|| {
+            "the shoulders turn with the head until the scene is loaded again: it was loaded with a neck that stays stiff".to_owned()
+        })
     }
 
     /// Changes the view without a check: the next picture refuses settings outside their range.

@@ -6,11 +6,12 @@ use crate::{Scene, cache::relative};
 
 /// Settings with which another film begins: a run is not resumed with another value of one of them. A section stands
 /// for all that is in it.
-const FIXED: [&str; 9] = [
+const FIXED: [&str; 10] = [
     "groom",
     "style",
     "body.file",
     "body.parts",
+    "motion.neck",
     "simulation.strands.method",
     "simulation.time_step",
     "film.frames_per_second",
@@ -131,6 +132,7 @@ mod tests {
             ("simulation.time_step", "0.01"),
             ("groom.points_per_strand", "20"),
             ("film.start", "1"),
+            ("motion.neck", "true"),
         ] {
             let refused = changed(key, value).unwrap_err();
             assert!(refused.contains(&format!("its run has {key} = ")), "{refused}");

@@ -85,8 +85,6 @@ fn a_cache_of_drawn_strands_is_drawn_as_it_is() {
     // Strands of more points than a simulation has.
     (scene.groom.points_per_strand, scene.level_of_detail.segments_per_span) = (28, 3);
     scene.look.variation = 0.0;
-    // Shoulders that turn make most of the way that pictures are apart.
-    scene.motion.neck = Some(false);
     let settings = OutSettings { what: What::Strands, ..OutSettings::new(folder.path().join("a.npz")) };
     whole(&scene, &settings);
     let live = pictures(&mut Player::new(&scene, Backend::Cpu, true).unwrap());

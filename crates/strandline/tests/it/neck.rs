@@ -1,36 +1,42 @@
-//! The neck of the built-in bust, which bends unless a scene says otherwise.
+//! The neck of the built-in bust, which bends where a scene says so.
 
-use strandline::{Pose, Prepared, Scene, scene::MotionName};
+use strandline::{Backend, Change, Event, FrameLoop, Pose, Prepared, Scene};
 
-/// A scene of few strands.
-fn few(mut scene: Scene) -> Prepared {
+/// The demo with few strands and a neck.
+fn few(neck: bool) -> Prepared {
+    let mut scene = Scene::demo();
     scene.style.strand_count = 8;
     scene.groom.bound = Some(0);
+    scene.motion.neck = neck;
     Prepared::new(&scene).unwrap()
 }
 
 #[test]
-fn shoulders_stay_under_the_motions_of_the_built_in_bust() {
-    for name in [MotionName::Shake, MotionName::Nod, MotionName::Turn, MotionName::Keyframes] {
-        let mut scene = Scene::demo();
-        scene.motion.name = name;
-        assert!(scene.motion.bends(), "{name:?}");
-        scene.motion.neck = Some(false);
-        assert!(!scene.motion.bends(), "{name:?}");
-    }
-    for name in [MotionName::Still, MotionName::File] {
-        let mut scene = Scene::demo();
-        scene.motion.name = name;
-        assert!(!scene.motion.bends(), "{name:?}: nothing turns, or the joint of a file may walk about");
-    }
-    let demo = few(Scene::demo());
-    let (mesh, frame) = (demo.mesh.as_ref().unwrap(), demo.head.frame(0.3));
+fn shoulders_stay_where_the_neck_bends() {
+    let bent = few(true);
+    let (mesh, frame) = (bent.mesh.as_ref().unwrap(), bent.head.frame(0.3));
     let (head, rest) = (frame.world_from_head(), &mesh.positions);
-    assert!(head != Pose::IDENTITY && frame.piece(1) == Pose::IDENTITY && demo.colliders.len() == 8);
+    assert!(head != Pose::IDENTITY && frame.piece(1) == Pose::IDENTITY && bent.colliders.len() == 8);
     let moved = mesh.positions_in(&frame);
     let low = rest.iter().zip(moved.iter()).filter(|(rest, _)| rest.y < -0.24);
     let farthest = low.map(|(rest, moved)| head.point(*moved).distance(*rest)).fold(0.0, f32::max);
     assert!(farthest < 1e-6, "shoulders move by {farthest} m");
-    let thesis = few(Scene::thesis());
-    assert!(thesis.mesh.unwrap().neck.is_none() && thesis.colliders.len() == 1, "as printed");
+    let stiff = few(false);
+    assert!(stiff.mesh.unwrap().neck.is_none() && stiff.colliders.len() == 1);
+}
+
+#[test]
+fn a_neck_that_stays_stiff_until_the_next_load_is_told() {
+    let told = |loaded: bool, then: bool| {
+        let prepared = few(loaded);
+        let mut motion = prepared.scene.motion.clone();
+        motion.neck = then;
+        let mut hair = FrameLoop::open(prepared, Backend::Cpu).unwrap();
+        hair.change(Change::Motion(motion.into())).unwrap();
+        let notes = std::iter::from_fn(|| hair.next_event());
+        notes
+            .filter(|event| matches!(event, Event::Note(note) if note.contains("a neck that stays stiff")))
+            .count()
+    };
+    assert_eq!([told(false, true), told(true, true), told(true, false)], [1, 0, 0]);
 }
