@@ -61,3 +61,13 @@ impl Caps {
         along.max(point.x.abs() - self.half_width).max((point.z - front).max(back - point.z))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_of_planes_are_those_of_their_slope() {
+        assert!((Caps::STEEP * Caps::steepness() - 1.0).abs() < 1e-6);
+    }
+}

@@ -290,6 +290,18 @@ mod tests {
     }
 
     #[test]
+    fn clothes_of_the_same_motion_are_held_through_a_jump_with_the_body() {
+        let rest = [Vec3::ZERO, Vec3::X * 0.1, Vec3::Y * 0.1, Vec3::Z * 0.1];
+        let far = rest.map(|place| place + Vec3::X * 9.0);
+        let motion = VertexMotion::sampled(vec![0.0, 0.04], vec![rest.to_vec(), far.to_vec()]).unwrap();
+        let (all, placing) = ([rest, rest].concat(), (1.0, Quat::IDENTITY));
+        let body = SkinMotion::new(motion.clone(), Playback::default(), &all, placing, &[]).unwrap();
+        let both = body.with_part(4, motion, Playback::default(), placing).unwrap();
+        let skin = both.frame(0.02).skin().map(|skin| skin.to_vec());
+        assert!(skin.is_none_or(|skin| skin == all), "nothing is on its way");
+    }
+
+    #[test]
     fn a_mark_holds_what_was_before_it_and_numbers_the_frames() {
         let (motion, rest, turn) = motion();
         let motion = motion.with_teleports(&[0.6]).unwrap();
