@@ -78,6 +78,13 @@ class Groom(TypedDict, total=False):
     """Ties strands where they come together in a knot, as those of a ponytail do, unless the scene has `[[ties]]`.
     Allowed: true or false."""
 
+    bands: bool
+    """Draws a band just behind each place where hair is tied, as a part of the body; without it where a style is.
+    Allowed: true or false."""
+
+    band_color: Sequence[float]
+    """Colour of bands, linear RGB. Allowed: 3 numbers of 0 to 1."""
+
     own_look: bool
     """Draws colours and widths of the file in place of the look's. Allowed: true or false."""
 

@@ -55,6 +55,7 @@ mod polar;
 mod posed_skin;
 mod recorded;
 mod rigid_fit;
+mod ring;
 mod scalp;
 mod scalp_place;
 mod skin_line;

@@ -6,6 +6,7 @@
 
 mod arcs;
 mod attributes;
+mod bands;
 mod binding;
 mod brush;
 mod choice;
@@ -24,6 +25,7 @@ mod unlike;
 pub mod format;
 pub mod root_ball;
 
+pub use bands::Band;
 pub use binding::{Binding, Frames, Influence, MOST_INFLUENCES, Surface, closing};
 pub use brush::{Stroke, Tool};
 pub use error::GroomError;

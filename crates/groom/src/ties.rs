@@ -60,7 +60,7 @@ impl Guides {
     }
 
     /// True if a segment of a strand behind its root passes within a tie.
-    fn passes(&self, strand: usize, tie: &Tie) -> bool {
+    pub(crate) fn passes(&self, strand: usize, tie: &Tie) -> bool {
         (HELD..self.points_per_strand()).any(|end| {
             let (start, end) = (self.position(strand, end - 1), self.position(strand, end));
             let across = end - start;

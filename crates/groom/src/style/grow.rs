@@ -88,6 +88,10 @@ impl StyleSettings {
         let mut grown: Vec<Grown> =
             guides.into_iter().zip(&clumps).map(|(strand, clump)| Grown::new(strand, *clump)).collect();
         if more > 0 {
+            for (index, guide) in grown.iter_mut().enumerate() {
+                let thick = Random::new(self.seed, 17_000_000_000 + index as u64).unit();
+                guide.width = locks::width(thick, hair::density(self, &scalp, &guide.strand.root));
+            }
             let hair = hair::between(self, mannequin, &scalp, &combed, more);
             let shaped = locks::shape(self, &skin, &combed, &clumps, &hair);
             grown.extend(hair.into_iter().zip(shaped).map(|(own, Shaped { points, width })| Grown {

@@ -9,7 +9,7 @@ use strandline_body::{Mannequin, Random, Root, Scalp};
 
 use super::comb::{WHORL, in_fringe, smooth};
 use super::near::Near;
-use super::strand::{Strand, nearer};
+use super::strand::{Strand, before_hairline, nearer};
 use super::{Style, StyleSettings};
 
 /// Guides that a strand runs with at most.
@@ -26,11 +26,11 @@ const CROSSING: (f32, f32) = (0.05, 0.010);
 const WANDER: f32 = 0.0022;
 /// Distance \[m\] from the whorl within which strands lie across it, and how far aside they follow other guides \[m\].
 const ACROSS_WHORL: (f32, f32) = (0.020, 0.012);
-/// Height of a strand above the skin beside its root over that of the guides, that of hair which stands off the skin, and
-/// the way \[m\] along which it reaches theirs.
-const FLAT: f32 = 0.25;
-const STANDING: f32 = 0.65;
-const FLAT_WAY: f32 = 0.03;
+/// Height of a strand above the skin beside its root over that of the guides, and the way \[m\] along which it reaches
+/// theirs: of hair that hangs, of hair that is tied, which lies along the head, and of hair that stands off the skin.
+const HANGING: [f32; 2] = [0.15, 0.06];
+const TIED: [f32; 2] = [0.25, 0.03];
+const STANDING: [f32; 2] = [0.65, 0.03];
 /// More roots than strands: those that a thin hairline leaves out.
 const SPARE: f32 = 1.12;
 /// Share of the roots on the hairline itself that grow.
@@ -63,12 +63,15 @@ pub(super) fn between(
         .into_par_iter()
         .enumerate()
         .map(|(index, (root, density))| {
-            let root = nearer(settings, mannequin, scalp, root);
-            let density = if settings.style.is_tied() {
-                density.min(dense(TIED_HAIRLINE * settings.hairline, scalp, &root))
-            } else {
-                density
-            };
+            let mut root = nearer(settings, mannequin, scalp, root);
+            let mut density = density;
+            if settings.style.is_tied() {
+                density = density.min(self::density(settings, scalp, &root));
+                if !in_fringe(settings, &root) {
+                    let chance = Random::new(settings.seed, 18_000_000_000 + index as u64).unit();
+                    root = before_hairline(mannequin, scalp, root, chance);
+                }
+            }
             let (strand, guide) = beside(settings, guides, &near, root, index);
             Between { strand, guide, density }
         })
@@ -102,6 +105,12 @@ fn roots(settings: &StyleSettings, scalp: &Scalp, guides: &[Strand], count: usiz
         is_kept(*index - 1, of, take)
     });
     kept.map(|(root, density, _)| (root, density)).collect()
+}
+
+/// Density of the hair about a root of a style, 0 on the hairline to 1.
+pub(super) fn density(settings: &StyleSettings, scalp: &Scalp, root: &Root) -> f32 {
+    let breadth = if settings.style.is_tied() { TIED_HAIRLINE } else { 1.0 };
+    dense(breadth * settings.hairline, scalp, root)
 }
 
 /// Density of hair about a root, 0 to 1, behind a hairline of a breadth \[m\].
@@ -154,7 +163,11 @@ fn beside(
         *place += aside * (1.0 - closes * smooth(0.0, 0.4, share));
     }
     points[0] = root.position;
-    let flat = if matches!(settings.style, Style::Buzz | Style::Afro) { STANDING } else { FLAT };
+    let flat = match settings.style {
+        Style::Buzz | Style::Afro => STANDING,
+        style if style.is_tied() => TIED,
+        _ => HANGING,
+    };
     lay_flat(&mut points, root.normal, flat);
     (Strand { root, side, points }, found[0].0)
 }
@@ -183,18 +196,18 @@ fn side(settings: &StyleSettings, root: &Root, random: &mut Random) -> f32 {
 }
 
 /// Draws the beginning of a strand toward the plane of the skin at its root, to a share of its height there.
-fn lay_flat(points: &mut [Vec3], normal: Vec3, flat: f32) {
+fn lay_flat(points: &mut [Vec3], normal: Vec3, [flat, way]: [f32; 2]) {
     let root = points[0];
     let mut along = 0.0;
     let mut before = root;
     for point in &mut points[1..] {
         along += point.distance(before);
         before = *point;
-        if along > FLAT_WAY {
+        if along > way {
             break;
         }
         let height = (*point - root).dot(normal);
-        let share = flat + (1.0 - flat) * smooth(0.0, FLAT_WAY, along);
+        let share = flat + (1.0 - flat) * smooth(0.0, way, along);
         *point -= normal * (height.max(0.0) * (1.0 - share));
     }
 }

@@ -32,6 +32,10 @@ const SHORT: f32 = 0.5;
 const SHORT_TIED: f32 = 0.2;
 const SHORT_LENGTHS: [f32; 2] = [0.008, 0.035];
 
+/// Length \[m\] from the root by which a strand has its clearance from the skin, and the least share of it before.
+const RISEN: f32 = 0.02;
+const LEAST_RISEN: f32 = 0.3;
+
 /// A shaped strand and its diameter \[m\].
 pub(super) struct Shaped {
     pub points: Vec<Vec3>,
@@ -125,11 +129,12 @@ impl One<'_> {
         let kept = self.kept(length, &mut random);
         let mut even: Vec<Vec3> = equal_arcs(&cut(points, kept), last + 1).collect();
         let clearance = CLEARANCE * (0.5 + 0.9 * depth);
-        for point in &mut even[1..] {
-            *point = skin.outside(*point, clearance);
+        let step = even[0].distance(even[1]);
+        for (index, point) in even.iter_mut().enumerate().skip(1) {
+            let risen = (index as f32 * step / RISEN).clamp(LEAST_RISEN, 1.0);
+            *point = skin.outside(*point, clearance * risen);
         }
-        let fine = 0.55 + 0.45 * self.own.density;
-        Shaped { points: even, width: WIDTH * (0.8 + 0.4 * thick) * fine }
+        Shaped { points: even, width: width(thick, self.own.density) }
     }
 
     /// A point drawn toward the middles of both locks.
@@ -156,6 +161,11 @@ impl One<'_> {
         let left = if is_short { (least + (most - least) * shorter) / length.max(1e-3) } else { 1.0 };
         kept.min(left)
     }
+}
+
+/// Diameter \[m\] of a strand by chance, 0 to 1, finer on the hairline.
+pub(super) fn width(thick: f32, density: f32) -> f32 {
+    WIDTH * (0.8 + 0.4 * thick) * (0.55 + 0.45 * density)
 }
 
 /// The unit tangent at a point of a strand.

@@ -4,7 +4,7 @@ use glam::Vec3;
 use strandline_base::math;
 use strandline_body::{Mannequin, Root, Scalp};
 
-use super::comb::{WHORL, in_fringe};
+use super::comb::{WHORL, in_fringe, smooth};
 use super::{Style, StyleSettings};
 
 /// Distance \[m\] from the skin that all hair keeps once it has left the root.
@@ -24,6 +24,11 @@ const WHORL_REACH: (f32, f32) = (0.060, 1.9);
 /// depth is measured.
 const HAIRLINE_REACH: (f32, f32) = (0.140, 0.2);
 const PROBE: f32 = 0.001;
+
+/// Distance \[m\] before the hairline in which single hairs of the forehead and the temples of tied hair are rooted, and the
+/// depth up to which such a hair would be rooted else.
+const FEATHERED: f32 = 0.008;
+const FEATHERED_DEPTH: f32 = 0.010;
 
 /// A strand with the inputs of its shaping.
 pub struct Strand {
@@ -83,10 +88,29 @@ fn toward_hairline(mannequin: &Mannequin, scalp: &Scalp, root: Root) -> Root {
     if !(0.0..1.0).contains(&share) {
         return root;
     }
+    moved(mannequin, root, root.position - inward(scalp, &root) * (depth * (1.0 - least) * (1.0 - share)))
+}
+
+/// Moves the root of a tied hair on the hairline of forehead and temples before it, by a chance of 0 to 1: farther in some
+/// places than in others, so that the hairline is no line.
+pub fn before_hairline(mannequin: &Mannequin, scalp: &Scalp, root: Root, chance: f32) -> Root {
+    let place = root.position;
+    let near = smooth(FEATHERED_DEPTH, 0.0, scalp.depth(place)) * smooth(0.02, 0.04, place.z);
+    if near == 0.0 {
+        return root;
+    }
+    let waves =
+        math::sin(240.0 * place.x + 90.0 * place.y + 0.7) + math::sin(530.0 * place.x - 310.0 * place.y);
+    let reach = FEATHERED * (0.5 + 0.25 * waves);
+    moved(mannequin, root, place - inward(scalp, &root) * (reach * near * chance * chance))
+}
+
+/// Direction on the skin in which the hairline lies farther away.
+fn inward(scalp: &Scalp, root: &Root) -> Vec3 {
+    let depth = scalp.depth(root.position);
     let [first, second]: [Vec3; 2] = root.normal.any_orthonormal_pair().into();
     let slope = [first, second].map(|way| scalp.depth(root.position + way * PROBE) - depth);
-    let inward = (first * slope[0] + second * slope[1]).normalize_or_zero();
-    moved(mannequin, root, root.position - inward * (depth * (1.0 - least) * (1.0 - share)))
+    (first * slope[0] + second * slope[1]).normalize_or_zero()
 }
 
 /// A root at the skin's place nearest to another \[m\].

@@ -1,23 +1,24 @@
 //! Roots of grown styles: the way in which hair leaves the skin, and the ends of brows.
 
+use glam::Vec3;
 use strandline_body::Mannequin;
 use strandline_groom::{Style, StyleSettings};
 
-/// Median angle \[degrees\] to the skin of the first 8 mm of strands between guides on top of the head, off a parting and
-/// the hairline.
-fn rising(style: Style) -> f32 {
+/// Median angle \[degrees\] to the skin of the first 8 mm of strands between guides whose roots lie where a test says, off a
+/// parting and the hairline.
+fn rising(style: Style, is_there: fn(Vec3) -> bool) -> f32 {
     let scalp = Mannequin::new().scalp();
     let settings = StyleSettings { strand_count: 400, ..StyleSettings::new(style) };
     let groom = settings.grow_hair(1600).unwrap();
-    let is_there = |root: glam::Vec3| {
-        let is_parting = style.is_parted() && (root.x - settings.parting).abs() < 0.012;
-        root.y > 0.04 && scalp.depth(root) > 0.012 && !is_parting
+    let counts = |root: Vec3| {
+        let is_parting = style.is_parted() && (root.x - settings.parting).abs() < 0.012 && root.y > 0.0;
+        is_there(root) && scalp.depth(root) > 0.012 && !is_parting
     };
     let angle = |strand: usize| {
         let points = groom.strand(strand);
         let end = points.iter().find(|point| point.distance(points[0]) > 0.008)?;
         let sine = (*end - points[0]).normalize().dot(groom.root_normals.as_ref()?[strand]);
-        is_there(points[0]).then_some(sine.asin().to_degrees())
+        counts(points[0]).then_some(sine.asin().to_degrees())
     };
     let mut angles: Vec<f32> = (400..1600).filter_map(angle).collect();
     angles.sort_by(f32::total_cmp);
@@ -26,13 +27,18 @@ fn rising(style: Style) -> f32 {
 
 #[test]
 fn hair_leaves_the_skin_along_it_where_other_hair_covers_it() {
-    // 5 to 10 degrees where it rises as the guides do to two thirds.
+    let top = |root: Vec3| root.y > 0.04;
+    // Below the widest place the head recedes from hair that hangs.
+    let sides = |root: Vec3| root.y < 0.04;
+    // Hair that keeps its whole clearance from the root on has 4 to 7.5 degrees on top; that and hair that is flat for 3 cm
+    // alone have 20 below in the first two styles, 7 and 9 in the others.
     for style in [Style::Bob, Style::Long, Style::Ponytail, Style::Pixie] {
-        let (found, most) = (rising(style), if style == Style::Pixie { 9.0 } else { 6.3 });
-        println!("{style:?}: {found:.1} degrees");
-        assert!(found < most, "{style:?}: {found} degrees");
+        let most = if style.is_parted() { [3.0, 13.0] } else { [5.2, 7.0] };
+        let found = [rising(style, top), rising(style, sides)];
+        println!("{style:?}: {:.1} degrees on top, {:.1} below", found[0], found[1]);
+        assert!(found[0] < most[0] && found[1] < most[1], "{style:?}: {found:?} degrees");
     }
-    assert!(rising(Style::Buzz) > 40.0, "hair that stands off the skin");
+    assert!(rising(Style::Buzz, top) > 40.0, "hair that stands off the skin");
 }
 
 #[test]

@@ -12,6 +12,7 @@ use crate::{
 };
 
 use super::{
+    bands,
     face::Face,
     framing::{bounds, head_motion},
     loading::Loading,
@@ -47,6 +48,8 @@ pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
     if let Some(file) = &scene.groom.attributes {
         attributes::load(&scene.path(file), &mut guides)?;
     }
+    let ties = ties(scene, &guides);
+    bands::add(scene, is_grown, &ties, &all, &mut loading.mesh)?;
     loading.skin = match (loading.motion.take(), &loading.mesh) {
         (Some(motion), Some(mesh)) => {
             let body = loading.placings.body;
@@ -63,21 +66,25 @@ pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
     let (mesh, skin) = (loading.mesh.as_ref(), loading.skin.as_ref());
     let start = start(scene, loading.pivot, &all, mesh, skin, &loading.colliders)?;
     notes.extend(move_outside(&mut guides, &start, &loading.colliders, |_| 0.0));
-    notes.extend(tie(scene, &mut guides));
+    notes.extend(tie(scene, &mut guides, &ties));
     loading.start = start;
     (loading.strands, loading.chosen, loading.guides) = (Some(all), chosen, Some(guides));
     Ok(())
 }
 
-/// Ties guides where the scene has ties, or else where they come together in knots. Returns a note for each tie.
-fn tie(scene: &Scene, guides: &mut Guides) -> Vec<String> {
+/// The ties of the scene, or else those where strands come together in knots.
+fn ties(scene: &Scene, guides: &Guides) -> Vec<Tie> {
+    match scene.ties.is_empty() {
+        false => scene.ties.iter().map(TieSection::tie).collect(),
+        true if scene.groom.find_ties => guides.knots(),
+        true => Vec::new(),
+    }
+}
+
+/// Ties guides. Returns a note for each tie.
+fn tie(scene: &Scene, guides: &mut Guides, ties: &[Tie]) -> Vec<String> {
     let named = !scene.ties.is_empty();
-    let ties: Vec<Tie> = match named {
-        true => scene.ties.iter().map(TieSection::tie).collect(),
-        false if scene.groom.find_ties => guides.knots(),
-        false => Vec::new(),
-    };
-    let counts = guides.tie(&ties);
+    let counts = guides.tie(ties);
     let note = |(index, (tie, count)): (usize, (&Tie, usize))| {
         let [x, y, z] = tie.position.to_array();
         if !named {

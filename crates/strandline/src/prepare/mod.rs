@@ -1,5 +1,6 @@
 //! Loading of a scene: strands, body, solids and motion, a stage after the other.
 
+mod bands;
 mod cover;
 mod doubts;
 mod ends;

@@ -67,6 +67,10 @@ settings! {
         root_end: RootEnd = RootEnd::default();
         /// Ties strands where they come together in a knot, as those of a ponytail do, unless the scene has `[[ties]]`.
         find_ties: bool = true;
+        /// Draws a band just behind each place where hair is tied, as a part of the body; without it where a style is.
+        bands: Option<bool> = None;
+        /// Colour of bands, linear RGB.
+        band_color: Vec3 = Vec3::new(0.02, 0.02, 0.022), in [0.0, 1.0];
         /// Draws colours and widths of the file in place of the look's.
         own_look: bool = true;
         /// Turns the strands of a file: pitch (about x), yaw (about y), roll (about z). Where a scene turns neither and
