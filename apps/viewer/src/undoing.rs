@@ -1,7 +1,8 @@
 //! Undo and redo of what the scene holds, and panels that go back to what they were.
 
 use eframe::egui::{self, Ui};
-use strandline::{Change, Scene, edit::changes};
+use glam::Vec3;
+use strandline::{Change, Look, Scene, edit::changes};
 
 use crate::{App, controls::button};
 
@@ -34,6 +35,7 @@ impl ScenePart {
             Self::Look => scene.look.clone_from(&other.look),
             Self::Lights => {
                 scene.lights.clone_from(&other.lights);
+                scene.look.light_rig = other.look.light_rig;
                 scene.body_look = other.body_look;
             }
             Self::Groom => {
@@ -129,6 +131,7 @@ impl App {
     /// Changes the scene to another as a step: by changes, or by loading it, seen from where it is seen.
     pub(crate) fn apply(&mut self, mut scene: Scene) {
         (scene.picture.width, scene.picture.height) = (self.scene.picture.width, self.scene.picture.height);
+        follow_look(&mut scene, &self.scene.look, self.center);
         if changes(&self.scene, &scene).is_some() {
             return self.restore(scene);
         }
@@ -141,6 +144,17 @@ impl App {
         let scene = part.of(&self.scene, to);
         self.apply(scene);
     }
+}
+
+/// Gives a scene the lights of its look where it has those of the look before, about the middle of hair and body \[m\].
+/// True where they change.
+pub fn follow_look(scene: &mut Scene, before: &Look, center: Vec3) -> bool {
+    let (old, new) = (before.lights(center), scene.look.lights(center));
+    let follows = old != new && !old.is_empty() && scene.lights == old;
+    if follows {
+        scene.lights = new;
+    }
+    follows
 }
 
 /// Buttons that set a panel back: to before its last change, and to the scene as it was loaded.
@@ -186,5 +200,26 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     });
     if let Some(done) = wanted {
         app.go_to(done);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use strandline::look::LightRig;
+
+    use super::*;
+
+    #[test]
+    fn lights_follow_the_look_until_a_person_changes_one() {
+        let mut scene = Scene { lights: Look::default().lights(Vec3::Y), ..Scene::default() };
+        let before = scene.look.clone();
+        scene.look.light_rig = LightRig::AllSides;
+        assert!(follow_look(&mut scene, &before, Vec3::Y) && scene.lights.len() == 4);
+        let before = scene.look.clone();
+        assert!(!follow_look(&mut scene, &before, Vec3::Y), "the same look");
+        scene.lights[0].intensity = 9.0;
+        let (before, own) = (scene.look.clone(), scene.lights.clone());
+        scene.look.light_rig = LightRig::Studio;
+        assert!(!follow_look(&mut scene, &before, Vec3::Y) && scene.lights == own);
     }
 }

@@ -53,6 +53,7 @@ pub use look::{Clump, GroupLook, Look, Shadow};
 pub use picture::Picture;
 pub use picture_settings::{Background, PictureSettings, ToneMap};
 pub use preset::Preset;
+pub use rigs::LightRig;
 pub use scatter::source::OwnColors;
 pub use shadow::{ShadowMap, Shadows};
 pub use strands::Strands;

@@ -9,6 +9,7 @@ use crate::Environment;
 use crate::coat::Coat;
 use crate::fibre::{Chiang, Fibre, FibreModel, Highlight, chiang::Pigment};
 use crate::preset::Preset;
+use crate::rigs::LightRig;
 use crate::surroundings::Surroundings;
 
 settings! {
@@ -19,6 +20,9 @@ settings! {
         /// The look that what is not given comes from: pigment and colours, fibre, highlights, layers of shadow and
         /// surroundings. "thesis" brings `picture.tone_map`, `picture.background` and lights too.
         preset: Preset = Preset::default();
+        /// Lights of a scene that names none, about the middle of hair and body; a picture of surroundings comes before
+        /// them.
+        light_rig: LightRig = LightRig::default();
         /// Follow strands of each guide, the guide itself among them.
         follow_strands: u32 = 16, in [1, 1024], slider [1, 64],
             more "denser hair of thinner strands, at a cost that grows with it";

@@ -5,7 +5,7 @@ use strandline_base::{Group, Value};
 
 use crate::fibre::{FibreModel, Scheuermann, chiang::Pigment};
 use crate::light_field::{self, Field};
-use crate::{Environment, Light, Look, Preset, RenderError, Shadow};
+use crate::{Environment, Light, LightRig, Look, Preset, RenderError, Shadow};
 
 /// Pigment of hair that a dye covers, and what it is if `pigment` is melanin again: that of brown hair.
 const PLAIN: [f32; 3] = [1.3, 0.1, 1.0];
@@ -178,10 +178,11 @@ impl Look {
         if self.surroundings.is_some() {
             return Vec::new();
         }
-        if self.fibre.model.scatters_many_times() {
-            Light::studio(target).to_vec()
-        } else {
-            Light::three_point(target).to_vec()
+        match self.light_rig {
+            LightRig::Auto if self.fibre.model.scatters_many_times() => Light::studio(target).to_vec(),
+            LightRig::Studio => Light::studio(target).to_vec(),
+            LightRig::AllSides => Light::all_sides(target).to_vec(),
+            LightRig::Auto | LightRig::ThreePoint => Light::three_point(target).to_vec(),
         }
     }
 

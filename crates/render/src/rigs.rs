@@ -1,9 +1,25 @@
 //! Lights about a head.
 
 use glam::Vec3;
+use strandline_base::choices;
 
 use crate::Light;
 use crate::lights::LightKind;
+
+choices! {
+    /// Lights about a head.
+    pub enum LightRig as "look.light_rig" {
+        /// Those of a studio, or the three spots where the fibre is that of the thesis.
+        Auto = "auto",
+        /// A soft box before the head, a strip behind it and a weak fill beside it.
+        Studio = "studio",
+        /// Soft boxes before, behind and at both sides: hair is dark from no side.
+        AllSides = "all_sides",
+        /// A warm key, a cool rim and a fill [Chen2011 §6].
+        ThreePoint = "three_point",
+    }
+    default Auto
+}
 
 impl Light {
     /// A soft box before and above a head at `target` \[m\] that faces +z, a cool strip behind it and a large, weak fill
@@ -85,6 +101,7 @@ impl Light {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Look;
     use crate::lights::at_samples;
 
     /// The least irradiance over pi, green, of matte surfaces that face the sides and the back.
@@ -96,6 +113,17 @@ mod tests {
             lit.map(|lit| lit.radiance.y * normal.normalize().dot(lit.to_light).max(0.0)).sum()
         };
         facing.map(on).into_iter().fold(f32::MAX, f32::min)
+    }
+
+    #[test]
+    fn a_look_brings_the_lights_that_it_names() {
+        let lights = |light_rig| Look { light_rig, ..Look::default() }.lights(Vec3::Y);
+        assert_eq!(lights(LightRig::Auto), Light::studio(Vec3::Y));
+        assert_eq!(lights(LightRig::AllSides), Light::all_sides(Vec3::Y));
+        assert_eq!(lights(LightRig::ThreePoint), Light::three_point(Vec3::Y));
+        let thesis = Look { light_rig: LightRig::Auto, ..Look::thesis() };
+        assert_eq!(thesis.lights(Vec3::Y), Light::three_point(Vec3::Y));
+        assert_eq!(Look { light_rig: LightRig::Studio, ..thesis }.lights(Vec3::Y), Light::studio(Vec3::Y));
     }
 
     #[test]

@@ -55,7 +55,7 @@ pub mod settings {
 pub mod look {
     pub use crate::render::{
         Background, BodyLook, Clump, Coat, Environment, FrameReport, GroupLook, LevelOfDetail, LightKind,
-        Preset, ToneMap, fibre, surroundings,
+        LightRig, Preset, ToneMap, fibre, surroundings,
     };
 }
 

@@ -3,7 +3,11 @@
 
 use eframe::egui::{self, Color32, Sense, Stroke, Ui, Vec2};
 use glam::Vec3;
-use strandline::{Camera, Change, Light, look::LightKind, settings::Group};
+use strandline::{
+    Camera, Change, Light, Look,
+    look::{LightKind, LightRig},
+    settings::Group,
+};
 
 use crate::{
     App,
@@ -16,7 +20,13 @@ const BALL: f32 = 28.0;
 const MOST: usize = 8;
 
 pub fn show(app: &mut App, ui: &mut Ui) {
-    let before = app.scene.lights.clone();
+    let (before, rig) = (app.scene.lights.clone(), app.scene.look.light_rig);
+    let (look, base) = (&mut app.scene.look, &app.base.look);
+    choose(ui, (&mut look.light_rig, base.light_rig), &LightRig::ALL, &Look::ROWS.light_rig, "all lights");
+    if app.scene.look.light_rig != rig {
+        app.scene.lights = app.scene.look.lights(app.center);
+        app.send_look();
+    }
     let (lights, camera) = (&mut app.scene.lights, &app.camera);
     let mut gone = None;
     // A scene without lights is lit by those of its look.

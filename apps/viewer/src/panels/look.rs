@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Ui};
 use strandline::{
-    Look,
+    Change, Look,
     look::{
         Clump, Coat, Environment, Preset,
         fibre::{Chiang, Fibre, FibreModel, Highlight, Pigment, Scheuermann},
@@ -15,6 +15,7 @@ use crate::{
     App,
     controls::{choose, colour, slide},
     looks, thumbnails,
+    undoing::follow_look,
 };
 
 pub fn show(app: &mut App, ui: &mut Ui) {
@@ -36,6 +37,9 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     surroundings(look, base, ui);
     if app.scene.look != before {
         app.send_look();
+        if follow_look(&mut app.scene, &before, app.center) {
+            app.live.send(Change::Lights(app.scene.lights.clone()));
+        }
     }
     items::groups(app, ui);
 }
