@@ -2,6 +2,7 @@
 //! are damaged.
 
 mod deep;
+mod fast;
 
 use std::path::PathBuf;
 
