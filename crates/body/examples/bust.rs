@@ -1,7 +1,7 @@
 //! Writes a small rigged glTF of the built-in bust: five joints, a smile as a morph target, and four clips.
 //!
 //! ```text
-//! cargo run -p strandline-body --example bust -- examples/bust.glb
+//! cargo run -p strandline-body --example bust -- examples/bust.glb [spacing]
 //! ```
 //!
 //! Clips: `nod` (the chin to the chest and up again), `look` (over the left shoulder, a rest, and back), `shrug` and
@@ -16,7 +16,7 @@ use glb::{Parts, container, joint_nodes, surface, turns};
 use strandline_base::math;
 use strandline_body::{Mannequin, SignedDistance};
 
-/// Spacing of the samples of the skin \[m\].
+/// Spacing of the samples of the skin \[m\], where no other is asked for.
 const SPACING: f32 = 0.0065;
 /// Steps of a coordinate over the box of the bust.
 const STEPS: f32 = 65535.0;
@@ -29,11 +29,11 @@ const JOINTS: [(&str, Option<usize>, Vec3); 5] = [
     ("shoulder.R", Some(0), vec3(-0.03, -0.21, -0.05)),
 ];
 
-/// The skin as triangles.
-fn skin() -> (Vec<Vec3>, Vec<u32>) {
+/// The skin as triangles, from samples at a spacing \[m\].
+fn skin(spacing: f32) -> (Vec<Vec3>, Vec<u32>) {
     let bust = Mannequin::new();
     let bounds = bust.bounds();
-    let (places, corners) = surface(|place| bust.distance(place), [bounds.min, bounds.max], SPACING);
+    let (places, corners) = surface(|place| bust.distance(place), [bounds.min, bounds.max], spacing);
     (places.iter().map(|place| bust.nearest_skin(*place).0).collect(), corners)
 }
 
@@ -104,8 +104,8 @@ fn clips(parts: &mut Parts) -> Vec<String> {
 }
 
 /// The whole file.
-fn bust() -> Vec<u8> {
-    let (places, corners) = skin();
+fn bust(spacing: f32) -> Vec<u8> {
+    let (places, corners) = skin(spacing);
     let bounds = Mannequin::new().bounds();
     let (origin, size) = (bounds.min, (bounds.max - bounds.min).max_element());
     let mut parts = Parts::default();
@@ -195,7 +195,8 @@ fn nodes() -> Vec<String> {
 
 fn main() -> std::io::Result<()> {
     let path = std::env::args().nth(1).unwrap_or_else(|| "bust.glb".to_owned());
-    let bytes = bust();
+    let spacing = std::env::args().nth(2).map_or(SPACING, |text| text.parse().expect("a spacing [m]"));
+    let bytes = bust(spacing);
     std::fs::write(&path, &bytes)?;
     println!("{path}: {} bytes", bytes.len());
     Ok(())

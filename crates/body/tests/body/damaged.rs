@@ -51,6 +51,10 @@ impl Told {
 fn rides(mesh: &Mesh, motion: VertexMotion) {
     let places = &mesh.positions;
     assert_eq!(motion.vertex_count(), places.len());
+    // Between two places that are far from each other single precision may end.
+    for time in [f64::NEG_INFINITY, motion.end()] {
+        assert!(motion.positions(time).iter().all(|place| place.is_finite()), "at {time}");
+    }
     let backward = Playback { start: 0.3, speed: -1.5, is_loop: true };
     for playback in [Playback::default(), backward] {
         let body = SkinMotion::new(motion.clone(), playback, places, (1.0, Quat::IDENTITY), &[]).unwrap();
@@ -194,9 +198,8 @@ fn damaged_sequences_are_refused_or_drawn() {
             }
             write(folder.path(), name, text);
         }
-        for path in [&pattern, &folder.path().to_owned()] {
-            told.look(Mesh::load_sequence(path, one_of(&[24.0, 0.001, 10_000.0], &mut random)));
-        }
+        let path = one_of(&[&*pattern, folder.path()], &mut random);
+        told.look(Mesh::load_sequence(path, one_of(&[24.0, 0.001, 10_000.0], &mut random)));
         for name in names {
             // Two files may have one name.
             let _ = std::fs::remove_file(folder.path().join(name));
