@@ -160,9 +160,8 @@ fn moves((mesh, motion): (Mesh, VertexMotion)) -> bool {
 /// Clips of a glTF file are refused, or move the body.
 pub fn clips(bytes: &[u8]) -> bool {
     let Ok(names) = Mesh::clips_in(bytes) else { return false };
-    let play = |name: &String| {
-        Mesh::moving_from(bytes, name).is_ok_and(|(mesh, motion, _)| moves((mesh, motion)))
-    };
+    let play =
+        |name: &String| Mesh::moving_from(bytes, name).is_ok_and(|(mesh, motion, _)| moves((mesh, motion)));
     // Each clip reads the whole file.
     names.iter().take(4).filter(|name| play(name)).count() > 0
 }
