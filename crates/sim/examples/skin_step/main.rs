@@ -2,7 +2,7 @@
 //! by stage, and time of the load of such a body.
 //!
 //! ```text
-//! cargo run -p strandline-body --example bust -- out/character.glb 0.00636
+//! cargo run -p strandline-body --example bust -- out/character.glb 0.0077
 //! cargo run --release -p strandline-sim --example skin_step -- out/character.glb [steps] [bench/skin.json]
 //! ```
 //!
