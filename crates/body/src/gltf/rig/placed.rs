@@ -10,8 +10,9 @@ use crate::teleports::Teleports;
 
 /// Transforms of the vertices of a part.
 enum Carried<'a> {
-    /// Those of the joints.
+    /// The transforms of the joints, and the shares of the vertices in them.
     Skin(&'a Influences, Vec<Mat4>),
+    /// The transform of the node.
     Node(Mat4),
 }
 
