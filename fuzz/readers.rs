@@ -6,7 +6,7 @@ use strandline::{
     format::{LoadOptions, Parsed, bin, data, hair, npy, npz, obj, ply, prepare, project, tfx, usda},
     look::surroundings::{Panorama, Surroundings},
     low_level::{
-        body::{BodyFrame, Playback, RecordedMotion, SkinMotion, SkinRoots},
+        body::{BodyFrame, Playback, RecordedMotion, SkinMotion, SkinRoots, VertexMotion},
         groom::{GroomError, Guides},
     },
     mesh::{DistanceGrid, MeshFormat, SignedDistance},
@@ -16,7 +16,7 @@ use strandline::{
 pub type Target = fn(&[u8]) -> bool;
 
 /// Every target by its name, which is also that of its folder of seeds.
-pub const TARGETS: [(&str, Target); 24] = [
+pub const TARGETS: [(&str, Target); 26] = [
     ("hair", hair_file),
     ("tfx", tfx_file),
     ("project", project_file),
@@ -30,6 +30,8 @@ pub const TARGETS: [(&str, Target); 24] = [
     ("obj", obj),
     ("gltf", gltf),
     ("clips", clips),
+    ("frames", frames),
+    ("walk", walk),
     ("bvh", bvh),
     ("scan", scan),
     ("stl", stl),
@@ -139,28 +141,46 @@ pub fn gltf(bytes: &[u8]) -> bool {
     mesh(bytes, MeshFormat::Gltf)
 }
 
-/// Clips of a glTF file are refused, or move the body: its head, its vertices and roots on it are somewhere at any time.
+/// A body in motion: its head, its vertices and roots on it are somewhere at any time.
+fn moves((mesh, motion): (Mesh, VertexMotion)) -> bool {
+    assert_eq!(motion.vertex_count(), mesh.positions.len());
+    let playback = Playback { speed: -1.5, is_loop: true, ..Playback::default() };
+    let places = &mesh.positions;
+    let body = SkinMotion::new(motion, playback, places, (0.5, Default::default()), &[]).expect("a body");
+    let roots = SkinRoots::new(&mesh, &[places[0], places[places.len() / 2] * 1.01]);
+    let mut last = BodyFrame::REST;
+    for time in [-1.0, 0.3, 0.4, 1.9, f64::NAN, 1e300] {
+        let frame = roots.placed(body.frame(time), &last);
+        frame.check(Some(2), Some(places.len())).expect("a body that is somewhere");
+        last = frame;
+    }
+    true
+}
+
+/// Clips of a glTF file are refused, or move the body.
 pub fn clips(bytes: &[u8]) -> bool {
     let Ok(names) = Mesh::clips_in(bytes) else { return false };
-    let play = |name: &String| {
-        Mesh::moving_from(bytes, name).is_ok_and(|(mesh, motion, _)| {
-            assert_eq!(motion.vertex_count(), mesh.positions.len());
-            let playback = Playback { speed: -1.5, is_loop: true, ..Playback::default() };
-            let places = &mesh.positions;
-            let body =
-                SkinMotion::new(motion, playback, places, (0.5, Default::default()), &[]).expect("a body");
-            let roots = SkinRoots::new(&mesh, &[places[0], places[places.len() / 2] * 1.01]);
-            let mut last = BodyFrame::REST;
-            for time in [-1.0, 0.3, 0.4, 1.9, f64::NAN, 1e300] {
-                let frame = roots.placed(body.frame(time), &last);
-                frame.check(Some(2), Some(places.len())).expect("a body that is somewhere");
-                last = frame;
-            }
-            true
-        })
-    };
+    let play =
+        |name: &String| Mesh::moving_from(bytes, name).is_ok_and(|(mesh, motion, _)| moves((mesh, motion)));
     // Each clip reads the whole file.
     names.iter().take(4).filter(|name| play(name)).count() > 0
+}
+
+/// Vertices over time with their faces in an .npz are refused, or move the body.
+pub fn frames(bytes: &[u8]) -> bool {
+    let folder = Folder::new("frames");
+    let path = folder.0.join("walk.npz");
+    std::fs::write(&path, bytes).expect("a file");
+    Mesh::load_sequence(&path, 24.0).is_ok_and(moves)
+}
+
+/// A sequence of .obj files, here with a byte 0 between two, is refused, or moves the body.
+pub fn walk(bytes: &[u8]) -> bool {
+    let folder = Folder::new("walk");
+    for (number, file) in bytes.split(|byte| *byte == 0).take(4).enumerate() {
+        std::fs::write(folder.0.join(format!("walk{number}.obj")), file).expect("a file");
+    }
+    Mesh::load_sequence(&folder.0, 24.0).is_ok_and(moves)
 }
 
 /// The motion of a joint of a .bvh is read or refused; what was read is somewhere at any time.
@@ -183,17 +203,27 @@ pub fn stl(bytes: &[u8]) -> bool {
     mesh(bytes, MeshFormat::Stl)
 }
 
+/// A folder that goes when it is dropped.
+struct Folder(std::path::PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("strandline-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).expect("a folder");
+        Self(path)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
 /// A glTF file in a folder, with files beside it, below it and outside: none from outside is read.
 pub fn beside(bytes: &[u8]) -> bool {
     const OUTSIDE: f32 = 12_345.0;
-    /// A folder that goes when it is dropped.
-    struct Folder(std::path::PathBuf);
-    impl Drop for Folder {
-        fn drop(&mut self) {
-            let _ = std::fs::remove_dir_all(&self.0);
-        }
-    }
-    let outer = Folder(std::env::temp_dir().join(format!("strandline-beside-{}", std::process::id())));
+    let outer = Folder::new("beside");
     std::fs::create_dir_all(outer.0.join("inner/below")).expect("a folder");
     let triangle = |at: f32| [at, 0.0, 0.0, at, 1.0, 0.0, at, 0.0, 1.0].map(f32::to_le_bytes).concat();
     for (name, at) in [("a.bin", OUTSIDE), ("inner/a.bin", 1.0), ("inner/below/a.bin", 2.0)] {

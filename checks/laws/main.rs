@@ -33,6 +33,7 @@ mod sintel;
 mod skin_contact;
 mod skin_depth;
 mod skin_walls;
+mod skin_work;
 mod small_motion;
 mod spans;
 mod springs;

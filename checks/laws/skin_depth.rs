@@ -1,5 +1,6 @@
 //! Drawn hair on the sample bust that turns and shrugs, against the exact deformed mesh.
 
+use std::ops::Range;
 use std::path::Path;
 
 use glam::Vec3;
@@ -40,9 +41,9 @@ fn ponytail(clip: &str) -> Option<Prepared> {
     })
 }
 
-/// Points of strands from one number on \[m\], of `each` points a strand.
-fn from(first: usize, each: usize, points: &[Vec3]) -> Vec<Vec3> {
-    points.chunks(each).flat_map(|strand| strand[first..].iter().copied()).collect()
+/// Points of strands in a range of their numbers \[m\], of `each` points a strand.
+fn within(range: Range<usize>, each: usize, points: &[Vec3]) -> Vec<Vec3> {
+    points.chunks(each).flat_map(|strand| strand[range.clone()].iter().copied()).collect()
 }
 
 fn in_order(lanes: &[Vec3Lanes], strands: usize, points: usize) -> Vec<Vec3> {
@@ -50,8 +51,9 @@ fn in_order(lanes: &[Vec3Lanes], strands: usize, points: usize) -> Vec<Vec3> {
     (0..strands).flat_map(|strand| (0..points).map(move |point| place(strand, point))).collect()
 }
 
-/// Points that pictures draw \[m\], world space, without the first span, which leads out of the skin.
-fn drawn(prepared: &Prepared, placed: &[Vec3Lanes], body: &BodyFrame) -> Vec<Vec3> {
+/// Points that pictures draw \[m\], world space: those of the first span behind the root, which leads out of the skin, and all
+/// others.
+fn drawn(prepared: &Prepared, placed: &[Vec3Lanes], body: &BodyFrame) -> [Vec<Vec3>; 2] {
     let look = &prepared.scene.look;
     let bound = prepared.bound.as_ref().unwrap();
     let all = bound.strands();
@@ -64,12 +66,13 @@ fn drawn(prepared: &Prepared, placed: &[Vec3Lanes], body: &BodyFrame) -> Vec<Vec
     interpolate(&curves, all, &turns, look, &level, &mut strands);
     keep_outside(&mut strands, &curves, all.points_per_strand(), &bound.solids().placed(body.clone()));
     let each = level.segment_count(all.points_per_strand()) + 1;
-    from(spans as usize, each, &strands.positions)
+    let first = spans as usize;
+    [within(1..first, each, &strands.positions), within(first..each, each, &strands.positions)]
 }
 
 /// Runs a clip and looks every so many steps, and where the report says more than 1 mm: free points of guides, points of
-/// bound strands, drawn points; and the report's deepest \[m\] of all steps.
-fn looks(clip: &str, seconds: f64, every: usize) -> Option<([Found; 3], f32)> {
+/// bound strands, drawn points of the first span, all other drawn points; and the report's deepest \[m\] of all steps.
+fn looks(clip: &str, seconds: f64, every: usize) -> Option<([Found; 4], f32)> {
     let prepared = ponytail(clip)?;
     let mut settings = prepared.scene.simulation.clone();
     let hairs = prepared.scene.look.hair_count as f32 / prepared.guides.strand_count() as f32;
@@ -81,7 +84,7 @@ fn looks(clip: &str, seconds: f64, every: usize) -> Option<([Found; 3], f32)> {
     let points = guides.points_per_strand();
     let mut rig = Rig::new(&On::Cpu, Model::new(guides, &settings, prepared.colliders.clone()).unwrap());
     let mut body = roots.placed(prepared.head.frame(0.0), &BodyFrame::REST);
-    let (mut found, mut reported) = ([Found::default(); 3], 0.0_f32);
+    let (mut found, mut reported) = ([Found::default(); 4], 0.0_f32);
     let (mut frames, mut placed) = (Frames::default(), Vec::new());
     for step in 1..=(seconds / f64::from(settings.time_step)) as usize {
         body = roots.placed(prepared.head.frame(step as f64 * f64::from(settings.time_step)), &body);
@@ -93,12 +96,15 @@ fn looks(clip: &str, seconds: f64, every: usize) -> Option<([Found; 3], f32)> {
         let head = body.world_from_head();
         let skin = body.skin().unwrap().iter().map(|place| head.point(*place)).collect();
         let depths = Depths::new(mesh, skin);
-        let free = from(2, points, &in_order(&rig.state().positions, guides.strand_count(), points));
+        let free =
+            within(2..points, points, &in_order(&rig.state().positions, guides.strand_count(), points));
         found[0].add(&depths.of(&free));
         bound.place(&rig.state().positions, &body, &mut frames, &mut placed);
         let strands = bound.strands().strand_count();
-        found[1].add(&depths.of(&from(1, points, &in_order(&placed, strands, points))));
-        found[2].add(&depths.of(&drawn(&prepared, &placed, &body)));
+        found[1].add(&depths.of(&within(1..points, points, &in_order(&placed, strands, points))));
+        for (found, drawn) in found[2..].iter_mut().zip(drawn(&prepared, &placed, &body)) {
+            found.add(&depths.of(&drawn));
+        }
     }
     Some((found, reported))
 }

@@ -70,7 +70,8 @@ class Body:
 
     @classmethod
     def mannequin(cls) -> Body:
-        """The built-in bust."""
+        """The built-in bust as one rigid mesh. The bust of a scene without a body is the same, and its neck bends
+        under ``motion.neck``."""
         vertices, faces, _ = _native.mannequin()
         return cls(vertices, faces)
 

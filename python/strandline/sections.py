@@ -484,9 +484,19 @@ class Motion(TypedDict, total=False):
     scale: float
     """Metres per unit of that file. Allowed: 1e-6 to 1,000,000 m."""
 
+    start: float
+    """Time of that file's motion at the time 0 of the scene; the motion is held before its beginning and after its
+    end. Allowed: -1,000,000 to 1,000,000 s."""
+
+    speed: float
+    """Seconds of that file's motion in a second of the scene. Allowed: -1000 to 1000."""
+
+    loop: bool
+    """Begins that file's motion again after its end. Allowed: true or false."""
+
     teleports: Sequence[MotionTeleports]
     """Marks at which the joint is elsewhere at once, beside `extras.teleports` of a glTF's clip, times of the file's
-    motion. Allowed: 0 to 100,000."""
+    motion. A `loop` jumps at its beginning where 0 is marked. Allowed: 0 to 100,000."""
 
     keyframes: Sequence[MotionKeyframes]
     """Poses, in the order of their times; used by "keyframes"."""

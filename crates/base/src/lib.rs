@@ -28,6 +28,7 @@ mod setting_fields;
 mod setting_macro;
 mod setting_values;
 mod stopwatch;
+mod tally;
 mod temporary;
 mod text;
 pub mod vec3x8;
@@ -50,6 +51,7 @@ pub use setting::{
 };
 pub use setting_fields::FieldName;
 pub use stopwatch::{Stopwatch, timed};
+pub use tally::Tally;
 pub use temporary::{Abandoned, abandon_unfinished};
 pub use text::{counted, utf8_text, whole_lines};
 pub use whole_file::WholeFile;

@@ -31,6 +31,8 @@ pub struct DistanceGrid {
     least: Vec<u8>,
     /// Planes that a part of a bust lies between.
     caps: Option<Caps>,
+    /// Looks at triangles of a mesh by the searches of all nodes.
+    looks: [u64; 2],
 }
 
 /// Steps of [`DistanceGrid::least`] in a spacing.
@@ -111,7 +113,8 @@ impl DistanceGrid {
                 });
             }
         }
-        Ok(Self::from_distances(lattice, mesh_distance::at_nodes(mesh, &lattice)))
+        let (distances, looks) = mesh_distance::at_nodes(mesh, &lattice);
+        Ok(Self { looks, ..Self::from_distances(lattice, distances) })
     }
 
     /// A grid of distances \[m\] at the nodes of a lattice.
@@ -123,7 +126,7 @@ impl DistanceGrid {
             *node = gradient.extend(distances[index]);
         });
         let least = least(&lattice, &distances);
-        Self { lattice, inverse_spacing, nodes, distances, least, caps: None }
+        Self { lattice, inverse_spacing, nodes, distances, least, caps: None, looks: [0; 2] }
     }
 
     /// A part of the solid: at the nodes of this grid in a box, which holds the part with some air, the signed distance \[m\]
@@ -151,6 +154,13 @@ impl DistanceGrid {
     /// Planes that a part of a bust lies between.
     pub fn caps(&self) -> Option<&Caps> {
         self.caps.as_ref()
+    }
+
+    /// Numbers of triangles of a mesh that all nodes looked at while it was sampled, and of those whose exact distance they
+    /// needed, in a build with debug assertions; else 0.
+    #[doc(hidden)]
+    pub fn looks(&self) -> [u64; 2] {
+        self.looks
     }
 
     /// Distance of neighbouring nodes \[m\]: the requested one, or more.

@@ -27,8 +27,9 @@ const SIDE_OF_SHELLS: f32 = 256.0;
 ///
 /// The distance is exact, from the nearest triangle; of a large lattice it may be less more than seven cells from the
 /// surface, by a seventh of a cell, and by 0.4 more than ten cells ([`FarNodes`]). Its sign comes from counting the surface along
-/// lines of nodes, since the sign that the nearest triangle gives is wrong near its edges.
-pub(crate) fn at_nodes(mesh: &Mesh, lattice: &Lattice) -> Vec<f32> {
+/// lines of nodes, since the sign that the nearest triangle gives is wrong near its edges. With the looks of all
+/// searches ([`TriangleTree::looks`]).
+pub(crate) fn at_nodes(mesh: &Mesh, lattice: &Lattice) -> (Vec<f32>, [u64; 2]) {
     let triangles = corners_in_cells(mesh, lattice);
     let all = || (0..triangles.len() as u32).collect();
     let inside = inside_nodes(&Layers::new(&triangles, all()), signed_volume(&triangles) < 0.0, lattice);
@@ -57,7 +58,7 @@ pub(crate) fn at_nodes(mesh: &Mesh, lattice: &Lattice) -> Vec<f32> {
     distances.par_iter_mut().zip(inside).for_each(|(distance, inside)| {
         *distance = if inside { -*distance } else { *distance };
     });
-    distances
+    (distances, tree.looks())
 }
 
 /// Indices of the triangles of a closed mesh that are not within another of its shells, found at a spacing \[m\] at least,

@@ -236,7 +236,7 @@ impl PosedSkin {
         let first = if (before as usize) < self.solid.triangles.len() { before } else { 0 };
         let mut best = (first, from_triangle(first));
         let mut waiting = [(0.0_f32, 0_u32); DEPTH];
-        let mut count = 1;
+        let (mut count, mut looks) = (1, 1);
         while count > 0 {
             count -= 1;
             let (squared, index) = waiting[count];
@@ -245,6 +245,7 @@ impl PosedSkin {
             }
             let node = nodes[index as usize];
             if node.right == 0 {
+                looks += u64::from(node.range[1] - node.range[0]);
                 for triangle in node.range[0]..node.range[1] {
                     let squared = from_triangle(triangle);
                     if squared < best.1 {
@@ -263,6 +264,8 @@ impl PosedSkin {
                 }
             }
         }
+        self.solid.tally.searches.add(1);
+        self.solid.tally.looks.add(looks);
         best
     }
 

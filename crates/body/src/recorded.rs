@@ -11,7 +11,10 @@ use crate::gltf::{self, Fault, Rig};
 use crate::leaps::Leaps;
 use crate::parsing::{A_NAME, read_file, remedy};
 use crate::teleports::Teleports;
-use crate::{BodyError, Pose};
+use crate::{BodyError, Playback, Pose};
+
+/// Radius of a head \[m\].
+const RADIUS: f64 = 0.1;
 
 /// Rigid motion of a joint, as a file has it.
 #[derive(Clone, Debug)]
@@ -19,6 +22,7 @@ pub struct RecordedMotion {
     source: Source,
     /// Metres of a unit of the file.
     scale: f64,
+    playback: Playback,
     teleports: Teleports,
     /// Jumps between two samples.
     leaps: Leaps,
@@ -57,8 +61,7 @@ impl RecordedMotion {
             return Err(refused((found, A_NAME)));
         };
         let teleports = rig.teleports().clone();
-        let leaps = Leaps::default();
-        Ok(Self { source: Source::Node(Arc::new(rig), node), scale, teleports, leaps }.with_leaps())
+        Ok(Self::of(Source::Node(Arc::new(rig), node), scale, teleports))
     }
 
     /// Reads the motion of a joint from the bytes of a .bvh.
@@ -72,8 +75,18 @@ impl RecordedMotion {
     }
 
     fn of_joint(motion: JointMotion, scale: f64) -> Self {
-        let (source, teleports) = (Source::Joint(Arc::new(motion)), Teleports::default());
-        Self { source, scale, teleports, leaps: Leaps::default() }.with_leaps()
+        Self::of(Source::Joint(Arc::new(motion)), scale, Teleports::default())
+    }
+
+    fn of(source: Source, scale: f64, teleports: Teleports) -> Self {
+        let (playback, leaps) = (Playback::default(), Leaps::default());
+        Self { source, scale, playback, teleports, leaps }.with_leaps()
+    }
+
+    /// The same motion, of whose time a time of the scene is another.
+    #[must_use]
+    pub fn with_playback(self, playback: Playback) -> Self {
+        Self { playback, ..self }
     }
 
     /// The same, in which the head jumps between samples that lie too far apart for a person's. Those with a mark between them
@@ -106,14 +119,16 @@ impl RecordedMotion {
     }
 
     /// The head's pose (`world_from_head`) at a time \[s\]: it turns about the pivot \[m\], head space, and moves it, as the
-    /// joint turns and moves from its first moment on. Times before and after the motion are held.
+    /// joint turns and moves from its first moment on, which is the time 0 of the file. Times before and after the motion are
+    /// held.
     pub fn pose(&self, time: f64, pivot: Vec3) -> Pose {
         self.pose_from(time, pivot, Vec3::ZERO)
     }
 
     /// The head's pose as [`RecordedMotion::pose`], in a world whose origin lies at `origin` \[m\].
     pub fn pose_from(&self, time: f64, pivot: Vec3, origin: Vec3) -> Pose {
-        let [(first, start), (now, place)] = [0.0, self.leaps.held(time)].map(|time| self.joint(time));
+        let [(first, start), (now, place)] =
+            [0.0, self.leaps.held(self.playback.time(time, self.end()))].map(|time| self.joint(time));
         let rotation = (now * first.conjugate()).normalize().as_quat();
         let mut pose = Pose::rotation_about(pivot, rotation);
         let by = self.scale * (place - start);
@@ -126,7 +141,30 @@ impl RecordedMotion {
     pub fn jumps_until(&self, time: f64) -> Option<i64> {
         let marks = &self.teleports;
         let is_cut = !marks.times().is_empty() || !self.leaps.is_empty();
-        is_cut.then(|| marks.passed(time, 0.0) + self.leaps.passed(time, 0.0))
+        let end = self.end();
+        let (time, rounds) = (self.playback.time(time, end), self.playback.rounds(time, end));
+        is_cut.then(|| marks.passed(time, rounds).saturating_add(self.leaps.passed(time, rounds)))
+    }
+
+    /// Time of the last sample \[s\], of the file.
+    fn end(&self) -> f64 {
+        match &self.source {
+            Source::Node(rig, _) => rig.end(),
+            Source::Joint(motion) => (motion.poses.len() - 1) as f64 * motion.frame_time,
+        }
+    }
+
+    /// Way \[m\] of a head of 0.1 m about a pivot from the end of the motion to its beginning; 0 where it does not begin again,
+    /// and where its beginning is marked as a jump.
+    pub fn gap_of_loop(&self) -> f32 {
+        let end = self.end();
+        if !self.playback.is_loop || end <= 0.0 || self.teleports.times().contains(&0.0) {
+            return 0.0;
+        }
+        let [(first, start), (last, place)] = [0.0, end].map(|time| self.joint(time));
+        let turn = (last * first.conjugate()).xyz().length().min(1.0);
+        let gap = (self.scale * (place - start).length() + 2.0 * RADIUS * turn) as f32;
+        if gap.is_finite() { gap } else { 0.0 }
     }
 
     /// Rotation and place of the joint in the world, units of the file.
@@ -201,6 +239,25 @@ mod tests {
             assert_eq!((marked.jumps_until(time), motion.jumps_until(time)), (Some(jumps), None));
         }
         assert!(motion.clone().with_teleports(&[f64::NAN]).is_err());
+        // Played backward at half its speed, from its middle on, round and round.
+        let rounds = Playback { start: 0.5, speed: -0.5, is_loop: true };
+        for (time, own) in [(0.0, 0.5), (0.5, 0.25), (1.25, 0.875), (3.0, 0.0), (3.5, 0.75), (f64::NAN, 0.0)]
+        {
+            assert_eq!(
+                motion.clone().with_playback(rounds).pose(time, pivot),
+                motion.pose(own, pivot),
+                "{time}"
+            );
+            let jumps = marked.clone().with_playback(rounds).jumps_until(time).unwrap();
+            let expected = [(0.0, 1), (0.5, 0), (1.25, -1), (3.0, -2), (3.5, -3)];
+            let expected = expected.iter().find(|(known, _)| *known == time).map_or(0, |(_, jumps)| *jumps);
+            assert_eq!(jumps, expected, "{time}");
+        }
+        // 10 cm, and 40 degrees of a head of 10 cm.
+        assert!((motion.clone().with_playback(rounds).gap_of_loop() - 0.1684).abs() < 1e-4);
+        assert_eq!(motion.gap_of_loop(), 0.0);
+        let closed = motion.clone().with_teleports(&[0.0]).unwrap().with_playback(rounds);
+        assert_eq!(closed.gap_of_loop(), 0.0, "the beginning is marked");
         let absent = RecordedMotion::load(&path, "Hips", None, 1.0).unwrap_err().to_string();
         assert!(absent.contains("no joint `Hips` among `Head`") && !absent.contains("export"), "{absent}");
     }

@@ -80,6 +80,7 @@ impl PosedSkin {
     /// front, -1 where it enters.
     fn cross(&self, line: &Line, mut crossed: impl FnMut(f64, i32)) {
         let nodes = &self.solid.nodes;
+        self.solid.tally.lines.add(1);
         let (mut waiting, mut count) = ([0_u32; DEPTH], 1);
         while count > 0 {
             count -= 1;

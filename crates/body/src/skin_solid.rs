@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::{Vec3, Vec3A};
+use strandline_base::Tally;
 use strandline_base::par::prelude::*;
 
 use crate::inside_out::{RestVolume, side_of};
@@ -44,6 +45,16 @@ pub struct SkinSolid {
     /// -1 for a surface that is inside out.
     pub(crate) facing: f32,
     volume: RestVolume,
+    pub(crate) tally: SkinTally,
+}
+
+/// Counts of searches of a skin for what is nearest, of the triangles that they look at, and of lines through it, through all
+/// steps.
+#[derive(Debug, Default)]
+pub(crate) struct SkinTally {
+    pub searches: Tally,
+    pub looks: Tally,
+    pub lines: Tally,
 }
 
 /// A node of the tree; the left child follows its parent.
@@ -95,6 +106,7 @@ impl SkinSolid {
             first_around,
             facing,
             volume,
+            tally: SkinTally::default(),
         })
     }
 
@@ -106,6 +118,14 @@ impl SkinSolid {
     /// Number of triangles, those over holes among them.
     pub fn triangle_count(&self) -> usize {
         self.triangles.len()
+    }
+
+    /// Numbers of searches for what is nearest so far, of triangles that they looked at, and of lines that were followed, in
+    /// a build with debug assertions; else 0.
+    #[doc(hidden)]
+    pub fn work(&self) -> [u64; 3] {
+        let SkinTally { searches, looks, lines } = &self.tally;
+        [searches, looks, lines].map(Tally::count)
     }
 
     /// Box of the skin at rest.

@@ -11,14 +11,39 @@ pub(crate) struct Plane {
     corner: DVec3,
     /// Normal, as long as twice the area.
     normal: DVec3,
-    /// Square of that length.
+    /// Square of that length, and one over it.
     area: f64,
+    inverse_area: f64,
+    /// A disc in the plane that holds the triangle: its middle, from the corner, and its radius.
+    middle: DVec3,
+    radius: f64,
 }
+
+/// Shares of squared distances by which rounding may err in the bound of a disc.
+const ROUNDING: f64 = 1e-9;
+const CANCELLED: f64 = 1e-12;
 
 impl Plane {
     pub fn of([a, b, c]: &Corners) -> Self {
         let normal = (b - a).cross(c - a);
-        Self { corner: *a, normal, area: normal.length_squared() }
+        let middle = (a + b + c) / 3.0;
+        let radius =
+            [a, b, c].into_iter().fold(0.0, |most: f64, corner| most.max(corner.distance_squared(middle)));
+        let area = normal.length_squared();
+        Self { corner: *a, normal, area, inverse_area: 1.0 / area, middle: middle - a, radius: radius.sqrt() }
+    }
+
+    /// True where the disc is farther from a point than a known squared distance: most triangles about the nearest one lie in
+    /// nearly the same plane and beside the point.
+    #[inline]
+    pub fn is_farther(&self, point: DVec3, known: f64) -> bool {
+        let from_corner = point - self.corner;
+        let height = from_corner.dot(self.normal);
+        let height_squared = height * height * self.inverse_area;
+        let squared = (from_corner - self.middle).length_squared();
+        let reach = self.radius + (known - height_squared).max(0.0).sqrt();
+        // False without an area, where the height is no number.
+        squared - height_squared > (1.0 + ROUNDING) * reach * reach + CANCELLED * squared
     }
 }
 
@@ -33,7 +58,7 @@ pub(crate) fn nearer(corners: &Corners, point: DVec3, known: f64) -> Option<f64>
 /// wrong by its whole size.
 #[inline]
 pub(crate) fn nearer_than(corners: &Corners, plane: &Plane, point: DVec3, known: f64) -> Option<f64> {
-    let Plane { corner, normal, area } = *plane;
+    let Plane { corner, normal, area, .. } = *plane;
     // The distance from its plane is a lower bound, and cheap.
     let height = (point - corner).dot(normal);
     if height * height > known * area {

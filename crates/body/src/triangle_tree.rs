@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use glam::DVec3;
+use strandline_base::Tally;
 
 use crate::layers::Corners;
 use crate::triangle::{Plane, nearer_than};
@@ -22,6 +23,8 @@ pub(crate) struct TriangleTree<'a> {
     /// Place of each triangle in this order; meaningless for one that is not in the tree.
     places: Vec<u32>,
     nodes: Vec<Node>,
+    /// Triangles that searches looked at, and those of them whose exact distance they needed.
+    looks: [Tally; 2],
 }
 
 /// A box; the left child follows its parent.
@@ -64,7 +67,8 @@ impl<'a> TriangleTree<'a> {
     pub fn new(triangles: impl Into<Cow<'a, [Corners]>>, order: Vec<u32>) -> Self {
         let triangles = triangles.into();
         let (planes, places) = (Vec::new(), vec![0; triangles.len()]);
-        let mut tree = Self { triangles, planes, places, nodes: Vec::with_capacity(order.len()), order };
+        let nodes = Vec::with_capacity(order.len());
+        let mut tree = Self { triangles, planes, places, nodes, order, looks: Default::default() };
         let count = tree.order.len();
         if count > 0 {
             tree.grow(0, count);
@@ -113,14 +117,24 @@ impl<'a> TriangleTree<'a> {
         self.offer_at(self.places[triangle as usize] as usize, point, nearest);
     }
 
-    /// The same of the triangle at a place of the order.
+    /// The same of the triangle at a place of the order. True where its exact distance was needed.
     #[inline]
-    fn offer_at(&self, place: usize, point: DVec3, nearest: &mut Nearest) {
+    fn offer_at(&self, place: usize, point: DVec3, nearest: &mut Nearest) -> bool {
+        if self.planes[place].is_farther(point, nearest.squared) {
+            return false;
+        }
         let triangle = self.order[place];
         let corners = &self.triangles[triangle as usize];
         if let Some(squared) = nearer_than(corners, &self.planes[place], point, nearest.squared) {
             *nearest = Nearest { squared, triangle };
         }
+        true
+    }
+
+    /// Numbers of triangles that all searches looked at, and of those whose exact distance they needed, in a build with debug
+    /// assertions; else 0.
+    pub fn looks(&self) -> [u64; 2] {
+        [self.looks[0].count(), self.looks[1].count()]
     }
 
     /// Finds the nearest triangle among at most `budget` that it looks at, and returns how many those were;
@@ -128,7 +142,7 @@ impl<'a> TriangleTree<'a> {
     pub fn search(&self, point: DVec3, budget: u64, nearest: &mut Nearest) -> u64 {
         let mut waiting = [(0.0, 0_u32); DEPTH];
         let mut count = usize::from(!self.nodes.is_empty());
-        let mut seen = 0;
+        let (mut seen, mut exact) = (0, 0);
         while count > 0 && seen < budget {
             count -= 1;
             let (squared, index) = waiting[count];
@@ -138,7 +152,7 @@ impl<'a> TriangleTree<'a> {
             let node = &self.nodes[index as usize];
             if node.right == 0 {
                 for place in node.range[0] as usize..node.range[1] as usize {
-                    self.offer_at(place, point, nearest);
+                    exact += u64::from(self.offer_at(place, point, nearest));
                     seen += 1;
                 }
                 continue;
@@ -157,6 +171,8 @@ impl<'a> TriangleTree<'a> {
                 }
             }
         }
+        self.looks[0].add(seen);
+        self.looks[1].add(exact);
         seen
     }
 }

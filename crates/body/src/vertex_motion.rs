@@ -100,10 +100,7 @@ impl VertexMotion {
     /// Positions of vertices of these indices at the time of a sample \[s\], units of the file.
     pub(crate) fn places(&self, time: f64, vertices: &[u32]) -> Vec<Vec3> {
         match &self.source {
-            Source::Clip(rig) => {
-                let all = rig.positions(Some(time), &self.teleports);
-                vertices.iter().map(|vertex| all[*vertex as usize]).collect()
-            }
+            Source::Clip(rig) => rig.places(Some(time), &self.teleports, vertices),
             Source::Frames(frames, _) => frames.places(time, vertices),
         }
     }
@@ -125,11 +122,40 @@ impl VertexMotion {
         }
     }
 
+    /// Number of vertices that a clip has placed so far, each time they were, in a build with debug assertions; else 0.
+    #[doc(hidden)]
+    pub fn placed_count(&self) -> u64 {
+        match &self.source {
+            Source::Clip(rig) => rig.placed_count(),
+            Source::Frames(..) => 0,
+        }
+    }
+
     /// Number of vertices.
     pub fn vertex_count(&self) -> usize {
         match &self.source {
             Source::Clip(rig) => rig.vertex_count(),
             Source::Frames(frames, _) => frames.vertex_count(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Mesh;
+
+    #[test]
+    fn places_of_some_vertices_are_those_among_all() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/body/clips/rig.glb");
+        for clip in ["step", "linear", "spline"] {
+            let (mesh, motion, _) = Mesh::load_moving(&path, clip).unwrap();
+            let some: Vec<u32> = (0..mesh.positions.len() as u32).rev().step_by(3).collect();
+            for time in [0.0, 0.3, 0.5, 1.7] {
+                let all = motion.positions(time);
+                let expected: Vec<Vec3> = some.iter().map(|vertex| all[*vertex as usize]).collect();
+                assert_eq!(motion.places(time, &some), expected, "{clip} at {time}");
+            }
         }
     }
 }

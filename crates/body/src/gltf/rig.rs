@@ -1,12 +1,12 @@
 //! A glTF mesh in motion: nodes, skins and morph targets at any time of a clip.
 
-use std::borrow::Cow;
+mod placed;
 
 use ::gltf::mesh::Primitive;
 use ::gltf::scene::Transform;
 use ::gltf::{Node, Semantic};
 use glam::{DMat4, DQuat, DVec3, DVec4, Mat4, Vec3};
-use strandline_base::memory::Need;
+use strandline_base::{Tally, memory::Need};
 
 use super::buffers::Buffers;
 use super::nodes::Nodes;
@@ -38,6 +38,8 @@ pub(crate) struct Rig {
     tracks: Vec<Track>,
     /// Marks of the clip.
     teleports: Teleports,
+    /// Vertices placed so far.
+    placed: Tally,
 }
 
 /// Transform of a node in the space of the node above.
@@ -86,6 +88,7 @@ impl Rig {
             parts: Vec::new(),
             tracks,
             teleports: Teleports::default(),
+            placed: Tally::default(),
         }
     }
 
@@ -174,36 +177,6 @@ impl Rig {
         };
         self.parts.push(Part { node: node.index(), middle, base, targets, skin });
         Ok(())
-    }
-
-    /// Positions of all vertices in the units of the file, in the order of the mesh, at a time of the clip \[s\], held
-    /// before its first key and after its last; without a time at rest. Nothing is interpolated over marks.
-    pub fn positions(&self, time: Option<f64>, teleports: &Teleports) -> Vec<Vec3> {
-        let pose = self.pose(time, teleports);
-        let joints: Vec<Vec<DMat4>> = (self.skins.iter())
-            .map(|skin| {
-                let placed = |(joint, own): &(usize, DMat4)| pose.world_from_node[*joint] * *own;
-                skin.iter().flatten().map(placed).collect()
-            })
-            .collect();
-        let mut positions = Vec::with_capacity(self.vertex_count());
-        for part in &self.parts {
-            let morphed = part.morphed(&pose.weights[part.node]);
-            match &part.skin {
-                Some((skin, influences)) => {
-                    let joints: Vec<Mat4> = joints[*skin].iter().map(|joint| part.amid(joint)).collect();
-                    let place = |(vertex, position): (usize, &Vec3)| {
-                        influences.transform(vertex, &joints).0.transform_point3(*position)
-                    };
-                    positions.extend(morphed.iter().enumerate().map(place));
-                }
-                None => {
-                    let transform = part.amid(&pose.world_from_node[part.node]);
-                    positions.extend(morphed.iter().map(|position| transform.transform_point3(*position)));
-                }
-            }
-        }
-        positions
     }
 
     /// Of some vertices those that move rigidly with the node that carries most of them, and that no morph target moves.
@@ -362,26 +335,5 @@ impl Local {
                 DMat4::from_scale_rotation_translation(scale, rotation, translation)
             }
         }
-    }
-}
-
-impl Part {
-    /// The transform of positions from the middle, rounded once: far from the origin of the mesh its parts cancel.
-    fn amid(&self, transform: &DMat4) -> Mat4 {
-        let place = transform.transform_point3(self.middle);
-        DMat4 { w_axis: place.extend(1.0), ..*transform }.as_mat4()
-    }
-
-    /// Positions after morphing, from the middle.
-    fn morphed(&self, weights: &[f64]) -> Cow<'_, [Vec3]> {
-        let mut morphed = Cow::Borrowed(&self.base[..]);
-        for (target, moved) in &self.targets {
-            let weight = weights.get(*target).map_or(0.0, |weight| *weight as f32);
-            if weight != 0.0 {
-                let positions = morphed.to_mut();
-                moved.iter().for_each(|(vertex, delta)| positions[*vertex as usize] += weight * *delta);
-            }
-        }
-        morphed
     }
 }

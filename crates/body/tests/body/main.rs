@@ -3,6 +3,7 @@
 
 mod clips;
 mod closing;
+mod damaged;
 mod distance_grid;
 mod files;
 mod gltf_files;

@@ -25,12 +25,12 @@ fn frames(count: usize) -> Vec<Vec<Vec3>> {
     (0..count).map(at).collect()
 }
 
-fn numbers(count: usize) -> Vec<f32> {
+pub fn numbers(count: usize) -> Vec<f32> {
     frames(count).iter().flatten().flat_map(Vec3::to_array).collect()
 }
 
 /// The triangles of the cube in the order of its file.
-fn faces() -> Vec<u32> {
+pub fn faces() -> Vec<u32> {
     let quads = CUBE_OBJ.lines().filter_map(|line| line.strip_prefix("f "));
     let corners =
         |line: &str| line.split(' ').map(|word| word.parse::<u32>().unwrap() - 1).collect::<Vec<_>>();

@@ -62,15 +62,18 @@ pub(super) fn with_parts(
 pub(super) fn open_loops(skin: &SkinMotion, parts: &[usize]) -> Vec<String> {
     let keys =
         std::iter::once("body".to_owned()).chain(parts.iter().map(|part| format!("body.parts[{part}]")));
-    let open = keys.zip(skin.gaps_of_loops()).filter(|(_, gap)| *gap > OPEN);
-    open.map(|(key, gap)| {
+    keys.zip(skin.gaps_of_loops()).filter_map(|(key, gap)| open_loop(&key, gap)).collect()
+}
+
+/// The note on a motion of a section that ends `gap` \[m\] from where it begins.
+pub(super) fn open_loop(key: &str, gap: f32) -> Option<String> {
+    (gap > OPEN).then(|| {
         format!(
             "{key}.loop: the motion ends {:.1} cm from where it begins, and hair is pulled over the gap in a step: \
              a mark at 0 in `{key}.teleports` carries it",
             100.0 * gap
         )
     })
-    .collect()
 }
 
 /// The vertices among the first `count` nearest to places of the surface, and those that share a triangle with them, in

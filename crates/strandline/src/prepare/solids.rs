@@ -41,6 +41,10 @@ pub(super) fn solids(loading: &mut Loading) -> Result<(), Error> {
     }
     let scene = &loading.scene;
     let neck = loading.mesh.as_ref().and_then(|mesh| mesh.neck);
+    if scene.motion.neck && neck.is_none() && loading.mesh.is_some() {
+        let note = "motion.neck bends the built-in bust alone, without body.file and body.exact: here the neck stays stiff";
+        loading.notes.push(note.to_owned());
+    }
     if let Some(shape) = loading.shape.clone().filter(|_| is_solid) {
         let parts = match neck {
             Some(neck) => {

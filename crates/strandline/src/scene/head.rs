@@ -5,7 +5,7 @@ use strandline_base::math;
 
 use crate::{
     Error,
-    body::{BodyFrame, Motion, Neck, Pose, RecordedMotion, SkinMotion},
+    body::{BodyFrame, Motion, Neck, Playback, Pose, RecordedMotion, SkinMotion},
     scene::{MotionName, MotionSection, origin, solid_motion::SolidMotion},
 };
 
@@ -24,6 +24,8 @@ pub struct HeadMotion {
     /// Motion from a file, in the place of `motion` where the section asks for it.
     recorded: Option<RecordedMotion>,
     is_recorded: bool,
+    /// Time of that motion at a time of the scene.
+    playback: Playback,
     /// Neck of the built-in bust, and whether it bends under the motion.
     neck: Option<Neck>,
     bends: bool,
@@ -44,6 +46,7 @@ impl HeadMotion {
             body: None,
             recorded: None,
             is_recorded,
+            playback: section.playback(),
             neck: None,
             bends: section.neck,
             solids: Arc::default(),
@@ -76,14 +79,21 @@ impl HeadMotion {
         &self.solids
     }
 
-    /// The same motion, with that of a file for a section that asks for it.
+    /// The same motion, with that of a file for a section that asks for it, played as the section says.
     pub(crate) fn with_recorded(self, recorded: Option<RecordedMotion>) -> Self {
+        let recorded = recorded.map(|recorded| recorded.with_playback(self.playback));
         Self { recorded, ..self }
     }
 
     /// Motion from a file.
     pub(crate) fn recorded(&self) -> Option<&RecordedMotion> {
         self.recorded.as_ref()
+    }
+
+    /// Way \[m\] from the end of the motion of a file that begins again to its beginning, where the head follows it.
+    pub(crate) fn gap_of_loop(&self) -> f32 {
+        let recorded = self.recorded.as_ref().filter(|_| self.is_recorded);
+        recorded.map_or(0.0, RecordedMotion::gap_of_loop)
     }
 
     /// Motion of the body itself; `None` for a rigid one.
@@ -100,6 +110,7 @@ impl HeadMotion {
             body: None,
             recorded: None,
             is_recorded: false,
+            playback: Playback::default(),
             neck: None,
             bends: false,
             solids: Arc::default(),

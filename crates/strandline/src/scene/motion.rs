@@ -7,7 +7,7 @@ use strandline_base::{choices, settings};
 use super::TeleportSection;
 use crate::{
     Error,
-    body::{Curve, Interpolation, Key, Keyframe, Motion},
+    body::{Curve, Interpolation, Key, Keyframe, Motion, Playback},
 };
 
 choices! {
@@ -72,8 +72,14 @@ settings! {
         clip: Option<String> = None;
         /// Metres per unit of that file.
         scale: f32 = 1.0, in [1e-6, 1e6] "m";
+        /// Time of that file's motion at the time 0 of the scene; the motion is held before its beginning and after its end.
+        start: f64 = 0.0, in [-1e6, 1e6] "s", slider [0.0, 10.0];
+        /// Seconds of that file's motion in a second of the scene.
+        speed: f64 = 1.0, in [-1000.0, 1000.0], slider [0.0, 4.0], more "a faster motion";
+        /// Begins that file's motion again after its end.
+        r#loop: bool = false;
         /// Marks at which the joint is elsewhere at once, beside `extras.teleports` of a glTF's clip, times of the file's
-        /// motion.
+        /// motion. A `loop` jumps at its beginning where 0 is marked.
         teleports: Vec<TeleportSection> = Vec::new(), in [0, 100_000];
         /// Poses, in the order of their times; used by "keyframes".
         keyframes: Vec<KeyframeSection> = Vec::new();
@@ -98,6 +104,11 @@ impl MotionSection {
                 Motion::keyframes(&keys)?
             }
         })
+    }
+
+    /// Time of the motion of `file` at a time of the scene.
+    pub(crate) fn playback(&self) -> Playback {
+        Playback { start: self.start, speed: self.speed, is_loop: self.r#loop }
     }
 }
 

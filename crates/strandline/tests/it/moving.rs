@@ -282,6 +282,14 @@ fn the_head_follows_a_joint_of_a_file() {
         let face = pose.direction(Vec3::Z);
         assert!((face.x.atan2(face.z).to_degrees() - degrees).abs() < 1e-3, "{face} at {time}");
     }
+    (turns.motion.start, turns.motion.speed, turns.motion.r#loop) = (0.2, -0.5, true);
+    let Prepared { head, notes, .. } = Prepared::new(&turns).unwrap();
+    for (time, degrees) in [(0.0, 16.0_f32), (0.2, 8.0), (0.6, 32.0), (1.3, 4.0), (1.5, 36.0)] {
+        let face = head.pose(time).direction(Vec3::Z);
+        assert!((face.x.atan2(face.z).to_degrees() - degrees).abs() < 1e-2, "{face} at {time}");
+    }
+    let notes = notes.join("\n");
+    assert!(notes.contains("motion.loop: the motion ends 6.8 cm from where it begins"), "{notes}");
     turns.motion.joint = "Hips".to_owned();
     let error = Prepared::new(&turns).err().unwrap().to_string();
     assert!(error.contains("no joint `Hips` among `Head`"), "{error}");

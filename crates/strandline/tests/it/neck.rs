@@ -26,6 +26,20 @@ fn shoulders_stay_where_the_neck_bends() {
 }
 
 #[test]
+fn a_body_whose_neck_does_not_bend_is_told() {
+    let told = |change: fn(&mut Scene)| {
+        let mut scene = Scene::demo();
+        scene.style.strand_count = 8;
+        (scene.groom.bound, scene.motion.neck) = (Some(0), true);
+        change(&mut scene);
+        Prepared::new(&scene).unwrap().notes.iter().any(|note| note.contains("here the neck stays stiff"))
+    };
+    let exact = |scene: &mut Scene| scene.body.exact = true;
+    let stiff = |scene: &mut Scene| (scene.body.exact, scene.motion.neck) = (true, false);
+    assert_eq!([told(|_| {}), told(exact), told(stiff)], [false, true, false]);
+}
+
+#[test]
 fn a_neck_that_stays_stiff_until_the_next_load_is_told() {
     let told = |loaded: bool, then: bool| {
         let prepared = few(loaded);

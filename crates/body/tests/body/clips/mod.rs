@@ -2,6 +2,7 @@
 //! are damaged.
 
 mod deep;
+mod fast;
 
 use std::path::PathBuf;
 
@@ -113,7 +114,7 @@ fn a_clip_is_not_interpolated_over_a_mark_of_its_extras() {
 }
 
 /// A whole number below another.
-fn below(random: &mut Random, count: usize) -> usize {
+pub fn below(random: &mut Random, count: usize) -> usize {
     (random.bits() as usize) % count
 }
 
