@@ -1207,6 +1207,10 @@ class Look(TypedDict, total=False):
     surroundings. "thesis" brings `picture.tone_map`, `picture.background` and lights too. Allowed: one of brown,
     black, blonde, red, copper, grey, white, blue, pink, violet, green, thesis."""
 
+    light_rig: str
+    """Lights of a scene that names none, about the middle of hair and body; a picture of surroundings comes before
+    them. Allowed: one of auto, studio, all_sides, three_point."""
+
     follow_strands: int
     """Follow strands of each guide, the guide itself among them. Allowed: 1 to 1024."""
 
