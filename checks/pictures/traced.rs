@@ -80,7 +80,7 @@ law! {
 
 /// Light hair of the ball in two more lights, and the greatest share by which a channel of the whole may differ, and of a
 /// band: a soft box in even surroundings (0.02, 0.06 were seen), and a low sun that goes up through the tips, too bright as
-/// light from below is (0.14, 0.50; 0.21, 0.60 without the tilt of the scales in scattered light).
+/// light from below is (0.13, 0.50; 0.21, 0.60 without the tilt of the scales in scattered light).
 fn more() -> [(&'static str, &'static str, Scene, [f32; 2]); 2] {
     let mut blonde = scene(Quat::IDENTITY, [0.0, -1.0, 0.0], PIGMENTS[1].1);
     let around = Vec3::new(0.1, 0.12, 0.15);
