@@ -16,7 +16,7 @@ use strandline_render::{
     PictureSettings, Renderer, ToneMap,
 };
 
-use crate::linear::{Linear, Measures, folder, measures, npy, reference};
+use crate::linear::{Linear, Measures, folder, measures, npy, red, reference};
 use crate::opacity::spline;
 
 /// The row, of 256, of the highlight on the middle 64 columns: the brightest mean of five rows.
@@ -231,13 +231,16 @@ law! {
         let found = measures(&drawn.boxed(), &expected, &mask, 1.0);
         drawn.save("white_directional", 1.0);
         expected.save("white_directional_expected", 1.0);
-        // Cells smooth what is scattered near the surface: 0.90 of the reference. Eight scatterings left 0.85.
-        assert!(found.sound(1.0, 0.12), "{found:?}");
+        // 0.95 of the reference, whose noise alone is a FLIP of 0.21.
+        assert!(found.sound(1.0, 0.07), "{found:?}");
+        // Beside red light traced with less noise 0.117 and 0.934 were seen.
+        let traced = measures(&drawn.boxed().grey(), &red("white_traced", 64), &mask, 1.0);
+        assert!(traced.sound(0.15, 0.08), "{traced:?}");
         // Few scatterings leave it grey.
         if matches!(on, On::Cpu) {
             scene.look.fibre.chiang.scatterings = 4;
             let wrong = measures(&scene.drawn_by(on).boxed(), &expected, &mask, 1.0);
-            assert!(!wrong.sound(1.0, 0.12), "{wrong:?}");
+            assert!(!wrong.sound(1.0, 0.07), "{wrong:?}");
         }
     }
 }

@@ -41,6 +41,11 @@ impl Linear {
         Self { width, height, pixels: places.map(|(column, row)| mean(column, row)).collect() }
     }
 
+    /// A grey picture of its red light.
+    pub fn grey(&self) -> Self {
+        Self { pixels: self.pixels.iter().map(|pixel| Vec3::splat(pixel.x)).collect(), ..*self }
+    }
+
     /// 8-bit sRGB of the light times a factor, cut off at 1.
     pub fn shown(&self, gain: f32) -> Vec<u8> {
         let encode = |light: f32| {
@@ -76,10 +81,19 @@ pub fn npy(path: &Path) -> Vec<u8> {
 }
 
 pub fn reference(name: &str, width: usize) -> Linear {
-    let bytes = npy(&folder().join("look").join(format!("{name}.npy")));
-    let numbers: Vec<f32> = bytes.as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
-    let pixels: Vec<Vec3> = numbers.as_chunks::<3>().0.iter().map(|&rgb| rgb.into()).collect();
+    let pixels: Vec<Vec3> = numbers(name).as_chunks::<3>().0.iter().map(|&rgb| rgb.into()).collect();
     Linear { width, height: pixels.len() / width, pixels }
+}
+
+/// A reference of red light alone, as a grey picture.
+pub fn red(name: &str, width: usize) -> Linear {
+    let pixels: Vec<Vec3> = numbers(name).into_iter().map(Vec3::splat).collect();
+    Linear { width, height: pixels.len() / width, pixels }
+}
+
+fn numbers(name: &str) -> Vec<f32> {
+    let bytes = npy(&folder().join("look").join(format!("{name}.npy")));
+    bytes.as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect()
 }
 
 /// Differences between a picture and its reference inside a mask.

@@ -8,6 +8,7 @@
 //! comes from.
 
 use glam::Vec3;
+use strandline_base::math;
 
 use super::ways::{DIRECTIONS, Rays};
 use crate::fibre::chiang::Lobes;
@@ -21,8 +22,9 @@ pub(crate) const PATHS: usize = 3;
 /// Inclination of light behind a fibre of each kind of path.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inclination {
-    /// Share of the sine of its inclination that light keeps.
+    /// Shares of the sine of its inclination that light keeps, and of the cosine that the tilted scales make a sine.
     pub(crate) kept: [f32; PATHS],
+    pub(crate) tilted: [f32; PATHS],
     /// Share of the way from a direction's own inclination to that of a lobe at which the part of the lobe lies that the
     /// direction stands for.
     pub(crate) drawn: [f32; PATHS],
@@ -31,21 +33,28 @@ pub(crate) struct Inclination {
 impl Inclination {
     /// Of a fibre's lobes, not spread.
     pub(super) fn new(lobes: &Lobes) -> Self {
-        let variances = lobes.path_variances();
+        let (variances, kept, tilts) = (lobes.path_variances(), lobes.kept(), lobes.tilts());
+        let of_tilt = |of: fn(f64) -> f64| std::array::from_fn(|path| (kept[path] * of(tilts[path])) as f32);
         Self {
-            kept: lobes.kept().map(|kept| kept as f32),
+            kept: of_tilt(math::cos),
+            tilted: of_tilt(math::sin),
             // The product of two normal distributions.
             drawn: variances.map(|variance| (REGION / (REGION + variance)) as f32),
         }
     }
 
-    /// First moment of light of each kind of path along a direction whose inclination has the sine `own`, where the
-    /// light came to the fibre from one of the sine `from`.
+    /// Mean sines of inclination of each kind of path of light that came to the fibre from an inclination of a sine and a
+    /// cosine.
     #[inline]
-    pub(super) fn moment(&self, paths: &[Vec3; PATHS], from: f32, own: f32) -> f32 {
-        (0..PATHS)
-            .map(|path| paths[path].element_sum() * self.drawn[path] * (-self.kept[path] * from - own))
-            .sum()
+    pub(super) fn sent(&self, from: f32, flat: f32) -> [f32; PATHS] {
+        std::array::from_fn(|path| -self.kept[path] * from - self.tilted[path] * flat)
+    }
+
+    /// First moment of light of each kind of path along a direction whose inclination has the sine `own`, where the
+    /// light was [`sent`](Self::sent).
+    #[inline]
+    pub(super) fn moment(&self, paths: &[Vec3; PATHS], sent: &[f32; PATHS], own: f32) -> f32 {
+        (0..PATHS).map(|path| paths[path].element_sum() * self.drawn[path] * (sent[path] - own)).sum()
     }
 }
 

@@ -24,8 +24,8 @@ fn means(t: Vec3, to_light: Vec3) -> [f32; 3] {
     }
     let from = t.dot(to_light);
     let shares = lattice.straight_shares(from);
-    let kept = Inclination::new(&lobes).kept;
-    let sent: f32 = shares.iter().zip(kept).map(|(share, kept)| share.x * -kept * from).sum();
+    let sent = Inclination::new(&lobes).sent(from, (1.0 - from * from).sqrt());
+    let sent: f32 = shares.iter().zip(sent).map(|(share, sent)| share.x * sent).sum();
     let all: f32 = shares.iter().map(|share| share.x).sum();
     [own / whole, (own + moved) / whole, sent / all]
 }

@@ -14,6 +14,8 @@ use crate::scatter::ways::{DIRECTIONS, Rays};
 const MEAN_COSINE: f32 = std::f32::consts::FRAC_PI_4;
 /// Attenuation of light by skin, relative to cells that are evenly filled with it.
 const SKIN_EXTINCTION: f32 = 4.0;
+/// Optical depth of hair below which the rounding of an exponential would show in the mean radiance of a cell.
+const THIN: f32 = 1e-2;
 /// Slots that lie together.
 const BLOCK: usize = 64;
 /// No slot.
@@ -269,8 +271,9 @@ impl Crossing {
         let sine = cell.tangent.dot(direction);
         let cosine = (1.0 - sine * sine).max(0.0).sqrt();
         let depth = cell.hair * length * (cell.order * cosine + (1.0 - cell.order) * MEAN_COSINE);
-        if depth < 1e-6 {
-            return Self { before, behind, passed: 1.0, mean: 1.0 };
+        if depth < THIN {
+            let mean = 1.0 - 0.5 * depth;
+            return Self { before, behind, passed: 1.0 - depth * mean, mean };
         }
         let passed = exp(-depth);
         Self { before, behind, passed, mean: (1.0 - passed) / depth }
@@ -286,5 +289,23 @@ impl Crossing {
         *ray = shown + over * self.mean;
         let left = shown + over * self.passed;
         skin + (left - skin) * self.behind
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thin_hair_dims_light_as_the_exponential_says() {
+        for step in 0..160 {
+            let depth = 10.0_f64.powf(-8.0 + 0.05 * f64::from(step));
+            let cell = Cell { hair: depth as f32, tangent: Vec3::Y, order: 1.0, ..Cell::default() };
+            let Crossing { passed, mean, .. } = Crossing::new(&cell, Vec3::X, 1.0);
+            let exact = (-depth).exp();
+            assert!((f64::from(passed) - exact).abs() < 3e-6, "{depth}: {passed} {exact}");
+            let exact = -(-depth).exp_m1() / depth;
+            assert!((f64::from(mean) - exact).abs() < 2e-4, "{depth}: {mean} {exact}");
+        }
     }
 }

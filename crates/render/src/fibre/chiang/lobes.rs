@@ -38,9 +38,9 @@ impl Lobes {
         }
     }
 
-    /// The same with inclinations that spread more, by a variance, and scales that are not tilted.
+    /// The same with inclinations that spread more, by a variance.
     pub fn spread(&self, variance: f64) -> Self {
-        Self { variances: self.variances.map(|own| own + variance), tilt: 0.0, ..*self }
+        Self { variances: self.variances.map(|own| own + variance), ..*self }
     }
 
     /// Variance of the inclination of light that is reflected at the surface.
@@ -111,7 +111,12 @@ impl Lobes {
 
     /// The inclination of the eye that each kind of path sees on the tilted scales \[rad\].
     pub fn tilted(&self, eye: f64) -> [f64; LOBES] {
-        [eye - 2.0 * self.tilt, eye + self.tilt, eye + 4.0 * self.tilt, eye]
+        self.tilts().map(|tilt| eye + tilt)
+    }
+
+    /// Angles by which the tilted scales turn each kind of path toward the root \[rad\].
+    pub(crate) fn tilts(&self) -> [f64; LOBES] {
+        [-2.0 * self.tilt, self.tilt, 4.0 * self.tilt, 0.0]
     }
 
     /// Density of the light's inclination for each kind of path: over the sphere, weighted with the cosine, it

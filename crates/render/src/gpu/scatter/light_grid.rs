@@ -297,9 +297,9 @@ impl Made {
         let scale = fibre.ink_scale() as f32;
         let single = [table.floor, albedos.len() as f32, fibre.tip_pigment, scale];
         let vectors = [dark, light, darkest, self.from.of_darkest(lightest)];
-        let Inclination { kept, drawn } = *self.lattice.inclination();
+        let Inclination { kept, tilted, drawn } = *self.lattice.inclination();
         let numbers = single.into_iter().chain(vectors.into_iter().flat_map(|vector| vector.to_array()));
-        let numbers = numbers.chain(kept).chain(drawn);
+        let numbers = numbers.chain(kept).chain(drawn).chain(tilted);
         entries.iter_mut().zip(numbers).for_each(|(entry, number)| entry.w = number);
     }
 
