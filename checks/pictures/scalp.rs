@@ -255,8 +255,10 @@ fn bright_roots_are_counted_beside_the_crown() {
         println!("{}: {roots} of {hair} pixels are bright roots, of {any} of roots", style.name());
         shares.push((*style, roots as f32 / hair as f32));
     }
-    // 1.7 % were seen of a bob with a light above it; path tracing has no fewer (heads.rs).
-    assert!(shares.iter().all(|(_, share)| *share <= 0.02), "{shares:?}");
+    // 1.7 % were seen of a bob with a light above it; path tracing has no fewer (heads.rs). Over all views and lights it is
+    // at most .28 %.
+    let most = if in_full() { 0.004 } else { 0.02 };
+    assert!(shares.iter().all(|(_, share)| *share <= most), "{shares:?}");
     // Lit skin between the hairs of a parting counts as roots that are too bright.
     let [hair, _, roots] =
         bright(&mut Head::new(Style::Bob), BodyLook::default(), &views(1)[1], &panel(0.0, 1.7, 0.1));

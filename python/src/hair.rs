@@ -291,7 +291,7 @@ impl Playing {
             "lights" => hair.set_lights(scene.lights.clone())?,
             "body_look" => hair.set_body_look(scene.body_look)?,
             "level_of_detail" => hair.set_level_of_detail(scene.level_of_detail)?,
-            "look" => {}
+            "look" => self.light(&scene)?,
             section => {
                 let found = format!("a setting of `{section}`");
                 let expected = "a setting of simulation, look, body_look, lights, level_of_detail or picture: \
@@ -301,6 +301,13 @@ impl Playing {
         }
         self.scene = scene;
         Ok(())
+    }
+
+    /// Lights hair by the lights of a scene's look where it names none and the look has others than before.
+    fn light(&mut self, scene: &Scene) -> Result<(), strandline::Error> {
+        let [before, own] = [&self.scene, scene].map(|scene| self.hair.lights_of(&scene.look));
+        let follows = scene.lights.is_empty() && before != own;
+        if follows { self.hair.set_lights(own) } else { Ok(()) }
     }
 }
 

@@ -79,8 +79,8 @@ class Groom(TypedDict, total=False):
     Allowed: true or false."""
 
     bands: bool
-    """Draws a band just behind each place where hair is tied, as a part of the body; without it where a style is.
-    Allowed: true or false."""
+    """Draws a band just behind each place where hair is tied, as a part of the body; without it where a style is,
+    grown or read as it was written. Allowed: true or false."""
 
     band_color: Sequence[float]
     """Colour of bands, linear RGB. Allowed: 3 numbers of 0 to 1."""

@@ -160,6 +160,14 @@ def test_settings_change_while_it_runs(groom):
             simulation.set({"simulation.gravty": (0, 0, 0)})
 
 
+def test_lights_follow_the_look(groom, ball):
+    with shake(groom, body=ball, motion="still") as simulation:
+        before = simulation.picture("back", width=64, height=48).pixels
+        simulation.set({"look.light_rig": "all_sides"})
+        after = simulation.picture("back", width=64, height=48).pixels
+        assert after.mean() > 1.1 * before.mean()
+
+
 def test_pictures_are_arrays(groom, ball, tmp_path):
     with shake(groom, body=ball) as simulation:
         picture = simulation.picture("front", width=64, height=48)

@@ -42,6 +42,7 @@ fn a_link_makes_the_page_that_its_settings_made() {
     let changes = [
         ("look.tip_color", "#ff2000"),
         ("look.preset", "blonde"),
+        ("look.light_rig", "all_sides"),
         ("page.light", "90"),
         ("page.view", "-30"),
         ("page.color", "#ffc0a0"),

@@ -1,7 +1,7 @@
 //! Writes a small rigged glTF of the built-in bust: five joints, a smile as a morph target, and four clips.
 //!
 //! ```text
-//! cargo run -p strandline-body --example bust -- examples/bust.glb [spacing]
+//! cargo run -p strandline-body --example bust -- out/bust.glb [spacing]
 //! ```
 //!
 //! Clips: `nod` (the chin to the chest and up again), `look` (over the left shoulder, a rest, and back), `shrug` and

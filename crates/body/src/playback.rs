@@ -28,7 +28,9 @@ impl Playback {
     /// Number of times that the motion has begun again.
     pub(crate) fn rounds(&self, time: f64, end: f64) -> f64 {
         let is_round = self.is_loop && end > 0.0;
-        if is_round { ((self.start + self.speed * time) / end).floor() } else { 0.0 }
+        let time = self.start + self.speed * time;
+        // Of the same remainder as the time: their quotient alone may round to the next whole number.
+        if is_round { ((time - time.rem_euclid(end)) / end).round() } else { 0.0 }
     }
 }
 
@@ -43,6 +45,20 @@ mod tests {
         assert_eq!(Playback { speed: -1.0, ..playback }.time(1.0, 2.0), 1.5);
         assert_eq!(Playback { is_loop: false, ..playback }.time(5.0, 2.0), 10.5);
         assert_eq!(playback.time(f64::NAN, 2.0), 0.0);
+    }
+
+    #[test]
+    fn rounds_and_time_belong_together() {
+        let playback = Playback { start: 0.0, speed: 1.0, is_loop: true };
+        for end in [0.1, 2.0 / 24.0, 0.04 * 7.0, 1.0 / 3.0] {
+            for step in [1.0 / 24.0, 0.04, end] {
+                for frame in 0..1000 {
+                    let time = f64::from(frame) * step;
+                    let [rounds, within] = [playback.rounds(time, end), playback.time(time, end)];
+                    assert!((rounds * end + within - time).abs() < 1e-9, "{end} {time}: {rounds} {within}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -79,13 +79,15 @@ impl PosedSkin {
     /// A triangle for a first search.
     pub const UNKNOWN: u32 = NONE;
 
-    /// A skin through a step; `None` where it rides the head from start to end. Skins of other meshes are ignored.
+    /// A skin through a step; `None` where it rides the head from start to end. Skins of smaller meshes are ignored, and
+    /// vertices behind those of the solid, such as the ones of bands about hair, left out.
     pub fn new(solid: &Arc<SkinSolid>, skins: [Option<&Arc<[Vec3]>>; 2]) -> Option<Self> {
-        let skins = skins.map(|skin| skin.filter(|skin| skin.len() == solid.vertex_count));
+        let skins = skins.map(|skin| skin.filter(|skin| skin.len() >= solid.vertex_count));
         if skins.iter().all(Option::is_none) {
             return None;
         }
-        let positions = |skin: Option<&Arc<[Vec3]>>| solid.positions(skin.map(|skin| &skin[..]));
+        let positions =
+            |skin: Option<&Arc<[Vec3]>>| solid.positions(skin.map(|skin| &skin[..solid.vertex_count]));
         let (start, end) = par::join(|| positions(skins[0]), || positions(skins[1]));
         let pairs = start.par_iter().zip(&end).with_min_len(4096);
         let squares: Vec<f32> = pairs.map(|(start, end)| start.distance_squared(*end)).collect();

@@ -85,6 +85,11 @@ impl Scalp {
         self.height_above_hairline(position) > 0.0 && !self.mannequin.is_ear_within(position, EAR_MARGIN)
     }
 
+    /// Coordinates of a place on the skin \[m\] on the scalp, as [`Root::uv`].
+    pub fn uv(position: Vec3) -> Vec2 {
+        uv(position)
+    }
+
     /// Height \[m\] of a place on the skin above the hairline there, negative on bare skin.
     pub fn height_above_hairline(&self, position: Vec3) -> f32 {
         position.y - hairline::height(math::atan2(position.x.abs(), position.z))

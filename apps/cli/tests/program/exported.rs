@@ -33,7 +33,7 @@ fn a_style_that_was_written_and_read_is_drawn_as_the_style() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let [guides, strands] = COUNTS;
-    let few = ["long", "curly", "bob", "brows", "lashes"];
+    let few = ["long", "bun", "bob", "brows", "lashes"];
     let styles = if in_full() { Style::ALL.map(Style::name).to_vec() } else { few.to_vec() };
     let [guide_key, strand_key] = [format!("style.strand_count={guides}"), format!("groom.bound={strands}")];
     for style in styles {

@@ -24,8 +24,11 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     let (look, base) = (&mut app.scene.look, &app.base.look);
     choose(ui, (&mut look.light_rig, base.light_rig), &LightRig::ALL, &Look::ROWS.light_rig, "all lights");
     if app.scene.look.light_rig != rig {
-        app.scene.lights = app.scene.look.lights(app.center);
         app.send_look();
+        // A picture of the surroundings comes before them.
+        if app.scene.look.surroundings.is_none() {
+            app.scene.lights = app.scene.look.lights(app.center);
+        }
     }
     let (lights, camera) = (&mut app.scene.lights, &app.camera);
     let mut gone = None;

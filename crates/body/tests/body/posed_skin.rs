@@ -152,6 +152,18 @@ fn a_skin_that_rides_the_head_needs_no_tree() {
 }
 
 #[test]
+fn a_skin_with_bands_behind_it_is_that_of_its_body() {
+    let mesh = tube();
+    let solid = solid(&mesh, 0.02);
+    let moved: Vec<Vec3> = mesh.positions.iter().map(|place| *place + Vec3::X).collect();
+    let of = |skin: Vec<Vec3>| PosedSkin::new(&solid, [None, Some(&skin.into())]).unwrap();
+    let with_band = of([&moved[..], &[Vec3::splat(9.0); 5]].concat());
+    let place = vec3(1.06, 0.2, 0.01);
+    let [one, two] = [of(moved), with_band].map(|skin| skin.nearest(place, PosedSkin::UNKNOWN));
+    assert_eq!((one.triangle, one.distance), (two.triangle, two.distance));
+}
+
+#[test]
 fn triangles_carry_what_lies_near_them() {
     let mesh = tube();
     let solid = solid(&mesh, 0.02);

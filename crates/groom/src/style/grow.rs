@@ -6,7 +6,7 @@ use glam::Vec3;
 use strandline_base::math;
 use strandline_base::memory::{self, Need};
 use strandline_base::par::prelude::*;
-use strandline_body::{Mannequin, Random, Root, SignedDistance};
+use strandline_body::{Mannequin, Random, Root, Scalp, SignedDistance};
 
 use super::comb::{Combed, StrandEnd, TIE_RADIUS, fringe_end, smooth};
 use super::face;
@@ -99,6 +99,8 @@ impl StyleSettings {
                 ..Grown::new(Strand { points, ..own.strand }, clumps[own.guide])
             }));
         }
+        // Some were moved after their coordinates were found.
+        grown.iter_mut().map(|one| &mut one.strand.root).for_each(|root| root.uv = Scalp::uv(root.position));
         groom(grown, self.strand_count)
     }
 }

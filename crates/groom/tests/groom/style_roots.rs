@@ -1,7 +1,7 @@
 //! Roots of grown styles: the way in which hair leaves the skin, and the ends of brows.
 
 use glam::Vec3;
-use strandline_body::Mannequin;
+use strandline_body::{Mannequin, Scalp};
 use strandline_groom::{Style, StyleSettings};
 
 /// Median angle \[degrees\] to the skin of the first 8 mm of strands between guides whose roots lie where a test says, off a
@@ -39,6 +39,48 @@ fn hair_leaves_the_skin_along_it_where_other_hair_covers_it() {
         assert!(found[0] < most[0] && found[1] < most[1], "{style:?}: {found:?} degrees");
     }
     assert!(rising(Style::Buzz, top) > 40.0, "hair that stands off the skin");
+}
+
+#[test]
+fn the_hairline_of_tied_hair_is_no_line() {
+    let scalp = Mannequin::new().scalp();
+    for style in [Style::Ponytail, Style::Bun, Style::Braid] {
+        let settings = StyleSettings { strand_count: 400, ..StyleSettings::new(style) };
+        let groom = settings.grow_hair(6000).unwrap();
+        let roots = (400..6000).map(|strand| groom.strand(strand)[0]);
+        let before: Vec<f32> = roots
+            .filter(|root| root.z > 0.04)
+            .map(|root| -scalp.depth(root))
+            .filter(|before| *before > 1e-3)
+            .collect();
+        let farthest = before.iter().copied().fold(0.0, f32::max);
+        println!("{style:?}: {} roots before the hairline, up to {:.1} mm", before.len(), 1e3 * farthest);
+        // Some single hairs; there are none where roots stay on the scalp.
+        assert!((8..200).contains(&before.len()) && farthest < 9e-3, "{style:?}");
+    }
+}
+
+#[test]
+fn coordinates_of_roots_are_those_of_their_places() {
+    for style in [Style::Bob, Style::Pixie, Style::Ponytail] {
+        let settings = StyleSettings { strand_count: 200, ..StyleSettings::new(style) };
+        let groom = settings.grow_hair(1600).unwrap();
+        for (strand, uv) in groom.root_uvs.as_ref().unwrap().iter().enumerate() {
+            assert!(uv.distance(Scalp::uv(groom.strand(strand)[0])) < 1e-6, "{style:?} {strand}");
+        }
+    }
+}
+
+#[test]
+fn guides_are_as_fine_on_the_hairline_as_the_hair_between_them() {
+    let settings = StyleSettings { strand_count: 1000, ..StyleSettings::new(Style::Long) };
+    let (groom, scalp) = (settings.grow_hair(1600).unwrap(), Mannequin::new().scalp());
+    let mean = |wanted: fn(f32) -> bool| {
+        let guides = (0..1000).filter(|strand| wanted(scalp.depth(groom.strand(*strand)[0])));
+        let widths: Vec<f32> = guides.map(|strand| groom.widths.at(strand, 0)).collect();
+        widths.iter().sum::<f32>() / widths.len() as f32
+    };
+    assert!(mean(|depth| depth < 0.004) < 0.85 * mean(|depth| depth > 0.015));
 }
 
 #[test]

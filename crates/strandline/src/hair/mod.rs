@@ -11,6 +11,7 @@ use crate::{
     body::{Aabb, BodyFrame, Collider, Mesh},
     gpu::Gpu,
     groom::{Groom, Guides},
+    prepare::center,
     render::{BodyLook, Camera, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings},
     scene::GroomSection,
     scene::devices::{Pair, device_name},
@@ -237,6 +238,11 @@ impl Hair {
     /// The lights.
     pub fn lights(&self) -> &[Light] {
         self.session.view().lights()
+    }
+
+    /// The lights of a look on this hair, where a scene names none.
+    pub fn lights_of(&self, look: &Look) -> Vec<Light> {
+        look.lights(center(self.session.view().bounds()))
     }
 
     /// Changes the lights, from the next picture on.

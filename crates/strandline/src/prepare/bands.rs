@@ -12,15 +12,15 @@ const THICKNESS: f32 = 0.004;
 const FOLLOWING: f32 = 0.85;
 
 /// Adds a ring to the body for each tie with a band, about the strands that are drawn; hair without a body has rings alone.
-/// Hair passes through them.
+/// Hair passes through them. A body whose vertices a program gives and may move keeps these alone.
 pub(super) fn add(
     scene: &Scene,
-    is_grown: bool,
+    [is_grown, is_moved_by_host]: [bool; 2],
     ties: &[Tie],
     strands: &Guides,
     mesh: &mut Option<Mesh>,
 ) -> Result<(), Error> {
-    if !scene.groom.bands.unwrap_or(is_grown && mesh.is_some()) {
+    if !scene.groom.bands.unwrap_or(is_grown && mesh.is_some()) || is_moved_by_host {
         return Ok(());
     }
     let look = &scene.look;
@@ -41,14 +41,17 @@ pub(super) fn add(
 mod tests {
     use glam::Vec3;
 
-    use crate::{Prepared, Scene, Style, groom::StyleSettings};
+    use crate::{Prepared, Scene, Style, body::Material, groom::StyleSettings, scene::TieSection};
 
-    /// Middles of the bands of a scene's body.
+    /// Middles of the bands of a scene's body, which have the scene's colour.
     fn bands(scene: &Scene) -> Vec<Vec3> {
         let Some(mesh) = Prepared::new(scene).unwrap().mesh else { return Vec::new() };
         let Some(materials) = &mesh.materials else { return Vec::new() };
+        let color = Some(scene.groom.band_color.extend(1.0));
         let named = materials.list.iter().enumerate();
-        let named = named.filter(|(_, material)| material.name.as_deref() == Some("band"));
+        let is_band =
+            |material: &Material| material.name.as_deref() == Some("band") && material.color == color;
+        let named = named.filter(|(_, material)| is_band(material));
         let middle = |(number, _): (usize, _)| {
             let of = mesh.triangles.iter().zip(&materials.of_triangles);
             let own: Vec<u32> =
@@ -62,14 +65,17 @@ mod tests {
     fn tied_styles_and_tied_hair_of_files_on_demand_have_a_band() {
         let folder = tempfile::tempdir().unwrap();
         let mut scene = Scene::demo();
-        for style in [Style::Long, Style::Ponytail] {
+        scene.groom.band_color = Vec3::X;
+        for style in [Style::Long, Style::Bun, Style::Braid, Style::Ponytail] {
             scene.style = StyleSettings { strand_count: 300, ..StyleSettings::new(style) };
-            let count = usize::from(style == Style::Ponytail);
-            assert_eq!(bands(&scene).len(), count, "{style:?}");
+            assert_eq!(bands(&scene).len(), usize::from(style != Style::Long), "{style:?}");
         }
         let [middle] = bands(&scene)[..] else { panic!("one band") };
         let tie = Vec3::new(0.0, 0.038, -0.117);
         assert!(middle.distance(tie) < 0.02 && middle.z < tie.z + 0.002, "{middle}: behind the tie");
+        scene.ties = vec![TieSection { position: tie, radius: 0.03 }];
+        assert!(bands(&scene)[0].distance(middle) < 0.01, "a tie that the scene names");
+        scene.ties.clear();
         scene.groom.bands = Some(false);
         assert_eq!(bands(&scene), []);
         let file = folder.path().join("tail.hair");

@@ -49,7 +49,8 @@ pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
         attributes::load(&scene.path(file), &mut guides)?;
     }
     let ties = ties(scene, &guides);
-    bands::add(scene, is_grown, &ties, &all, &mut loading.mesh)?;
+    let is_moved_by_host = scene.body.file.as_ref().is_some_and(|file| loading.sources.has_mesh(file));
+    bands::add(scene, [is_grown, is_moved_by_host], &ties, &all, &mut loading.mesh)?;
     loading.skin = match (loading.motion.take(), &loading.mesh) {
         (Some(motion), Some(mesh)) => {
             let body = loading.placings.body;

@@ -41,7 +41,7 @@ pub(super) fn solids(loading: &mut Loading) -> Result<(), Error> {
     }
     let scene = &loading.scene;
     let neck = loading.mesh.as_ref().and_then(|mesh| mesh.neck);
-    if scene.motion.neck && neck.is_none() && loading.mesh.is_some() {
+    if scene.motion.neck && neck.is_none() {
         let note = "motion.neck bends the built-in bust alone, without body.file and body.exact: here the neck stays stiff";
         loading.notes.push(note.to_owned());
     }

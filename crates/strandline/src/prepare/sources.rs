@@ -54,6 +54,11 @@ pub struct Sources {
 type Body = (Mesh, Option<VertexMotion>, Vec<String>);
 
 impl Sources {
+    /// True for the name of a mesh in memory.
+    pub(super) fn has_mesh(&self, name: &Path) -> bool {
+        self.meshes.contains_key(name)
+    }
+
     /// True where nothing is in memory.
     pub(super) fn is_empty(&self) -> bool {
         let Self { grooms, meshes, motions, maps } = self;

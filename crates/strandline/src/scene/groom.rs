@@ -67,7 +67,8 @@ settings! {
         root_end: RootEnd = RootEnd::default();
         /// Ties strands where they come together in a knot, as those of a ponytail do, unless the scene has `[[ties]]`.
         find_ties: bool = true;
-        /// Draws a band just behind each place where hair is tied, as a part of the body; without it where a style is.
+        /// Draws a band just behind each place where hair is tied, as a part of the body; without it where a style is, grown or
+        /// read as it was written.
         bands: Option<bool> = None;
         /// Colour of bands, linear RGB.
         band_color: Vec3 = Vec3::new(0.02, 0.02, 0.022), in [0.0, 1.0];
