@@ -140,7 +140,7 @@ fn page() -> Result<String, Box<dyn std::error::Error>> {
          [scene.md](scene.md#style) says what each does.\n\n\
          At rest hair stays where it is, to the bit where it was measured. Six seconds after a shake of one second buns, braids, \
          afros, coils, buzz cuts, side-swept hair and hair of the face were back within 0.5 % of their length in the mean \
-         (checks/laws/rod_styles.rs, which holds all styles to 2 %).\n",
+         (checks/laws/rod_styles.rs, which holds the mean to 3 % and the strand in the middle to 2 %).\n",
     );
     let Kind::Words(words) = Scene::row("style.style")?.kind else { return Err("no list of styles".into()) };
     let plain = settings(Style::default());

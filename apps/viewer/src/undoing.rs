@@ -219,7 +219,7 @@ mod tests {
         assert!(!follow_look(&mut scene, &before, Vec3::Y), "the same look");
         scene.lights[0].intensity = 9.0;
         let (before, own) = (scene.look.clone(), scene.lights.clone());
-        scene.look.light_rig = LightRig::Studio;
+        scene.look.light_rig = LightRig::StudioLights;
         assert!(!follow_look(&mut scene, &before, Vec3::Y) && scene.lights == own);
     }
 }

@@ -176,7 +176,7 @@ impl Page {
         }
         let lights_of = |scene: &Scene| self.hair.lights_of(&scene.look);
         let is_lit_anew = scene.lights != before.lights
-            || scene.lights.is_empty() && lights_of(&scene) != lights_of(&before);
+            || scene.lights.is_empty() && lights_of(&scene) != lights_of(before);
         changes.into_iter().try_for_each(|change| self.change(change))?;
         self.scene = scene;
         if is_lit_anew { self.show_own() } else { Ok(()) }

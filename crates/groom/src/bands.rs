@@ -105,7 +105,7 @@ fn about(places: &[Vec3], normal: Vec3) -> Band {
     let sum = |of: fn(&Vec2) -> f32| flat.iter().map(of).sum::<f32>();
     let (across, mixed) = (sum(|at| at.x * at.x - at.y * at.y), sum(|at| 2.0 * at.x * at.y));
     // Half of the angle of (across, mixed) is that of the longer axis.
-    let size = across.hypot(mixed).max(1e-30);
+    let size = Vec2::new(across, mixed).length().max(1e-30);
     let cosine = (0.5 * (1.0 + across / size)).clamp(0.0, 1.0).sqrt();
     let sine = (0.5 * (1.0 - across / size)).clamp(0.0, 1.0).sqrt() * if mixed < 0.0 { -1.0 } else { 1.0 };
     let ways = [Vec2::new(cosine, sine), Vec2::new(-sine, cosine)];

@@ -180,7 +180,7 @@ impl Look {
         }
         match self.light_rig {
             LightRig::Auto if self.fibre.model.scatters_many_times() => Light::studio(target).to_vec(),
-            LightRig::Studio => Light::studio(target).to_vec(),
+            LightRig::StudioLights => Light::studio(target).to_vec(),
             LightRig::AllSides => Light::all_sides(target).to_vec(),
             LightRig::Auto | LightRig::ThreePoint => Light::three_point(target).to_vec(),
         }

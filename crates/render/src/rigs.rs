@@ -9,10 +9,10 @@ use crate::lights::LightKind;
 choices! {
     /// Lights about a head.
     pub enum LightRig as "look.light_rig" {
-        /// Those of a studio, or the three spots where the fibre is that of the thesis.
+        /// The lights of a studio, or three spots where the fibre is that of the thesis.
         Auto = "auto",
         /// A soft box before the head, a strip behind it and a weak fill beside it.
-        Studio = "studio",
+        StudioLights = "studio",
         /// Soft boxes before, behind and at both sides: hair is dark from no side.
         AllSides = "all_sides",
         /// A warm key, a cool rim and a fill [Chen2011 §6].
@@ -123,7 +123,10 @@ mod tests {
         assert_eq!(lights(LightRig::ThreePoint), Light::three_point(Vec3::Y));
         let thesis = Look { light_rig: LightRig::Auto, ..Look::thesis() };
         assert_eq!(thesis.lights(Vec3::Y), Light::three_point(Vec3::Y));
-        assert_eq!(Look { light_rig: LightRig::Studio, ..thesis }.lights(Vec3::Y), Light::studio(Vec3::Y));
+        assert_eq!(
+            Look { light_rig: LightRig::StudioLights, ..thesis }.lights(Vec3::Y),
+            Light::studio(Vec3::Y)
+        );
     }
 
     #[test]
