@@ -39,6 +39,8 @@ const OTHERS: [(&str, Style, &[&str], [&str; 2]); 3] = [
 ];
 /// A place before the eyes \[m\] and the place that is seen from there.
 const EYES: [Vec3; 2] = [Vec3::new(0.11, 0.0, 0.43), Vec3::new(0.008, -0.012, 0.085)];
+/// A place above the head \[m\] and the place that is seen from there.
+const ABOVE: [Vec3; 2] = [Vec3::new(0.0, 0.9, -0.2), Vec3::new(0.0, 0.0, -0.01)];
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/styles.md");
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -63,6 +65,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (name, style, settings, _) in OTHERS {
         drawn(style, settings, quick)?.save(folder.join(format!("style_{name}.png")))?;
     }
+    all_sides(quick)?.save(folder.join("styles_all_sides.jpg"))?;
     let assets = if quick { folder } else { Path::new(ASSETS) };
     row(&small).save(assets.join("styles.jpg"))?;
     let (mut hair, camera) = grown(Style::Bob, &[], quick)?;
@@ -110,6 +113,37 @@ fn grown(style: Style, settings: &[&str], quick: bool) -> Result<(Hair, Camera),
     Ok((Hair::from_prepared(prepared, Backend::Cpu)?, camera))
 }
 
+/// Hair of the head in rows, a style each: from the front, between front and side, from the side, from the back and from
+/// above.
+fn all_sides(quick: bool) -> Result<RgbImage, Box<dyn std::error::Error>> {
+    let side = if quick { 32 } else { 200 };
+    let styles: Vec<Style> = Style::ALL.into_iter().filter(|style| !style.is_of_face()).collect();
+    let mut sheet = RgbImage::new(side * 5, side * styles.len() as u32);
+    for (row, style) in (0..).step_by(side as usize).zip(styles) {
+        let mut scene = Scene::demo();
+        scene.set_style(style);
+        (scene.picture.width, scene.picture.height) = (side, side);
+        if quick {
+            (scene.style.strand_count, scene.body.spacing) = (40, 0.01);
+        }
+        let mut prepared = Prepared::new(&scene)?;
+        let mut cameras: Vec<Camera> = Vec::new();
+        for view in [View::Front, View::ThreeQuarter, View::Side, View::Back] {
+            prepared.scene.camera.view = view;
+            cameras.push(prepared.camera(1.0));
+        }
+        cameras.push(Camera { position: ABOVE[0], target: ABOVE[1], ..cameras[0] });
+        let mut hair = Hair::from_prepared(prepared, Backend::Cpu)?;
+        let look = hair.look().clone();
+        for (column, camera) in (0..).step_by(side as usize).zip(&cameras) {
+            let picture = hair.picture(camera, &look)?;
+            let drawn = RgbImage::from_raw(picture.width, picture.height, picture.pixels);
+            imageops::replace(&mut sheet, &drawn.ok_or("a picture of another size")?, column, row);
+        }
+    }
+    Ok(sheet)
+}
+
 /// Pictures side by side, small.
 fn row(pictures: &[Picture]) -> RgbImage {
     let mut row = RgbImage::new(SMALL * pictures.len() as u32, SMALL);
@@ -142,6 +176,7 @@ fn page() -> Result<String, Box<dyn std::error::Error>> {
          afros, coils, buzz cuts, side-swept hair and hair of the face were back within 0.5 % of their length in the mean \
          (checks/laws/rod_styles.rs, which holds the mean to 3 % and the strand in the middle to 2 %).\n",
     );
+    page.push_str("\nEach from the front, between front and side, from the side, from the back and from above:\n\n![all sides](gallery/styles_all_sides.jpg)\n");
     let Kind::Words(words) = Scene::row("style.style")?.kind else { return Err("no list of styles".into()) };
     let plain = settings(Style::default());
     for (style, word) in Style::ALL.into_iter().zip(words) {

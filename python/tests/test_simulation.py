@@ -165,7 +165,8 @@ def test_lights_follow_the_look(groom, ball):
         before = simulation.picture("back", width=64, height=48).pixels
         simulation.set({"look.light_rig": "all_sides"})
         after = simulation.picture("back", width=64, height=48).pixels
-        assert after.mean() > 1.1 * before.mean()
+        # Most of both pictures is background.
+        assert after.mean() > before.mean() + 2 and np.abs(after.astype(int) - before).max() > 20
 
 
 def test_pictures_are_arrays(groom, ball, tmp_path):

@@ -73,7 +73,8 @@ mod tests {
             (at.x / 0.02).powi(2) + (at.z / 0.01).powi(2)
         };
         let least = ring.positions.iter().map(inside).fold(f32::MAX, f32::min);
-        assert!((0.99..1.01).contains(&least), "{least}: the inner side touches the ellipse");
+        // The line at one distance from an ellipse is none: between its axes the ring lies up to .7 % of them within it.
+        assert!((0.98..1.01).contains(&least), "{least}: the inner side touches the ellipse");
         assert_eq!(ring.materials.unwrap().list[0].color, Some(Vec4::W));
     }
 }
