@@ -117,7 +117,8 @@ fn grown(style: Style, settings: &[&str], quick: bool) -> Result<(Hair, Camera),
 /// above.
 fn all_sides(quick: bool) -> Result<RgbImage, Box<dyn std::error::Error>> {
     let side = if quick { 32 } else { 200 };
-    let styles: Vec<Style> = Style::ALL.into_iter().filter(|style| !style.is_of_face()).collect();
+    let styles = Style::ALL.into_iter().filter(|style| !style.is_of_face());
+    let styles: Vec<Style> = styles.step_by(if quick { 6 } else { 1 }).collect();
     let mut sheet = RgbImage::new(side * 5, side * styles.len() as u32);
     for (row, style) in (0..).step_by(side as usize).zip(styles) {
         let mut scene = Scene::demo();
@@ -125,6 +126,7 @@ fn all_sides(quick: bool) -> Result<RgbImage, Box<dyn std::error::Error>> {
         (scene.picture.width, scene.picture.height) = (side, side);
         if quick {
             (scene.style.strand_count, scene.body.spacing) = (40, 0.01);
+            scene.groom.bound = Some(80);
         }
         let mut prepared = Prepared::new(&scene)?;
         let mut cameras: Vec<Camera> = Vec::new();
