@@ -41,7 +41,12 @@ pub(super) fn add(
 mod tests {
     use glam::Vec3;
 
-    use crate::{Prepared, Scene, Style, body::Material, groom::StyleSettings, scene::TieSection};
+    use crate::{
+        Prepared, Scene, Sources, Style,
+        body::{Mannequin, Material},
+        groom::StyleSettings,
+        scene::TieSection,
+    };
 
     /// Middles of the bands of a scene's body, which have the scene's colour.
     fn bands(scene: &Scene) -> Vec<Vec3> {
@@ -85,5 +90,10 @@ mod tests {
         assert_eq!(bands(&scene), [], "a file may have its own");
         scene.groom.bands = Some(true);
         assert_eq!(bands(&scene).len(), 1);
+        scene.body.file = Some("own".into());
+        let sources = Sources::default().with_mesh("own", Mannequin::new().mesh());
+        let found = Prepared::from_sources(&scene, &sources).unwrap();
+        assert!(found.notes.iter().any(|note| note.starts_with("groom.bands: no band")), "{:?}", found.notes);
+        assert_eq!(found.mesh.unwrap().positions.len(), Mannequin::new().mesh().positions.len());
     }
 }

@@ -50,6 +50,10 @@ pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
     }
     let ties = ties(scene, &guides);
     let is_moved_by_host = scene.body.file.as_ref().is_some_and(|file| loading.sources.has_mesh(file));
+    if is_moved_by_host && scene.groom.bands == Some(true) {
+        let note = "groom.bands: no band is drawn on a body whose vertices are those of a program";
+        notes.push(note.to_owned());
+    }
     bands::add(scene, [is_grown, is_moved_by_host], &ties, &all, &mut loading.mesh)?;
     loading.skin = match (loading.motion.take(), &loading.mesh) {
         (Some(motion), Some(mesh)) => {
