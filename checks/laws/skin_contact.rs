@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
-use glam::{DVec3, Quat, Vec3, vec3};
-use rayon::prelude::*;
+use glam::{Quat, Vec3, vec3};
 use strandline_body::{
     BodyFrame, Carrier, Collider, DistanceGrid, Mannequin, Mesh, Pose, PosedSkin, Shape, SignedDistance,
     SkinRoots, SkinSolid,
 };
-use strandline_checks::{On, Rig, gpu, law};
+use strandline_checks::{Depths, On, Rig, gpu, law};
 use strandline_groom::{Groom, Guides, LANES, Lanes};
 use strandline_sim::cells::Kind;
 use strandline_sim::contact::Obstacles;
@@ -72,22 +71,12 @@ impl Bust {
     /// Depth \[m\] of every free point inside the exact deformed mesh, 0 outside.
     fn depths(&self, state: &State, body: &BodyFrame) -> Vec<f32> {
         let head = body.world_from_head();
-        let skin = body.skin().unwrap();
-        let positions = skin.iter().map(|place| head.point(*place)).collect();
-        let mesh = Mesh::new(positions, self.mesh.triangles.clone()).unwrap().closed();
+        let vertices = body.skin().unwrap().iter().map(|place| head.point(*place)).collect();
         let points: Vec<Vec3> = (0..self.guides.strand_count())
             .flat_map(|strand| (2..POINTS).map(move |point| (strand, point)))
             .map(|(strand, point)| state.positions[strand / LANES * POINTS + point].get(strand % LANES))
             .collect();
-        let places = mesh.nearest_places(&points);
-        points
-            .par_iter()
-            .zip(places)
-            .map(|(point, place)| {
-                let away = point.distance(place);
-                if away < 0.01 && winding(&mesh, *point) > 0.5 { away } else { 0.0 }
-            })
-            .collect()
+        Depths::new(&self.mesh, vertices).of(&points)
     }
 }
 
@@ -108,17 +97,6 @@ fn draped(mannequin: &Mannequin, root: Vec3, normal: Vec3) -> Vec<Vec3> {
         points.push(point);
     }
     points
-}
-
-/// Winding number of a closed mesh around a point, by solid angles \[Jacobson2013\].
-fn winding(mesh: &Mesh, point: Vec3) -> f64 {
-    let angle = |corners: &[u32; 3]| {
-        let [a, b, c] = corners.map(|corner| (mesh.positions[corner as usize] - point).as_dvec3());
-        let [x, y, z]: [f64; 3] = [a, b, c].map(DVec3::length);
-        let volume = a.dot(b.cross(c));
-        2.0 * volume.atan2(x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y)
-    };
-    mesh.triangles.iter().map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
 }
 
 /// A simulation of the bust's hair.

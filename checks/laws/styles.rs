@@ -17,7 +17,7 @@ use strandline_sim::{Drive, Model};
 const BESIDE: f32 = 5e-4;
 const ALIKE: f32 = 0.05;
 /// Side of a cell \[m\], and the spacing \[m\] of the places of a strand that are looked at.
-const CELL: f32 = 0.008;
+const CELL: f32 = 0.003;
 const SPACING: f32 = 0.005;
 
 /// The drawn strands of a scene at rest, shape `[strand][point]` \[m\].
@@ -140,8 +140,8 @@ impl Places {
         for place in near {
             let (own, position, _) = self.all[*place as usize];
             let found = &mut beside[*place as usize];
-            let is_beside = own != strand && from_segment(position, ends) < BESIDE;
-            if is_beside && found.last() != Some(&strand) {
+            let is_known = own == strand || found.last() == Some(&strand);
+            if !is_known && from_segment(position, ends) < BESIDE {
                 found.push(strand);
             }
         }

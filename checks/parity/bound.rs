@@ -70,7 +70,7 @@ fn on_cpu(binding: &Binding, solids: &Solids) -> Vec<Vec3Lanes> {
 }
 
 pub(crate) fn look() -> Look {
-    Look { follow_strands: 3, ..Look::brown() }
+    Look { follow_strands: 3, ..Look::thesis() }
 }
 
 /// Strands and the points drawn of them; `None` without a GPU.
