@@ -10,3 +10,8 @@ fn alone() -> MutexGuard<'static, ()> {
     static TURN: Mutex<()> = Mutex::new(());
     TURN.lock().unwrap_or_else(PoisonError::into_inner)
 }
+
+/// True in `cargo xtask long`, which sets `STRANDLINE_FULL` to 1.
+fn in_full() -> bool {
+    std::env::var_os("STRANDLINE_FULL").is_some_and(|value| value == "1")
+}
