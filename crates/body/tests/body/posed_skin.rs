@@ -280,6 +280,40 @@ fn a_bound_carried_through_a_step_is_no_more_than_the_distance_after_it() {
     assert!(tight > -1e-3, "the most that the skin comes nearer is nearly the bound: {tight}");
 }
 
+/// Where the skin is told to stand still about a point, its nearest place does; where the tube bends none is. Far points have
+/// bounds of their distance.
+#[test]
+fn skin_that_stands_still_about_a_point_needs_no_search() {
+    let mesh = tube();
+    let solid = solid(&mesh, 0.01);
+    let rest: Arc<[Vec3]> = mesh.positions.clone().into();
+    let bend = |place: &Vec3| *place + Vec3::X * 0.4 * (place.y - 0.2).max(0.0);
+    let bent: Arc<[Vec3]> = mesh.positions.iter().map(bend).collect();
+    let step = PosedSkin::new(&solid, [Some(&rest), Some(&bent)]).unwrap();
+    let (mut still, mut moving, mut bounds) = (0, 0, 0);
+    for index in 0..2000 {
+        let share = index as f32;
+        let around = vec3((1.3 * share).sin(), (2.1 * share).cos(), (0.7 * share).sin());
+        let point = 0.1 * around + vec3(0.0, 0.2 + 0.1 * (0.3 * share).sin(), 0.0);
+        let found = step.nearest(point, PosedSkin::UNKNOWN);
+        let way = step.shift(found.triangle, point).length();
+        assert!(!step.is_still_about(point, PosedSkin::UNKNOWN), "no triangle shows that the skin is near");
+        if step.is_still_about(point, found.triangle) {
+            assert!(way < 1e-6, "{point}: {way} m");
+            still += 1;
+        } else {
+            moving += usize::from(way < 1e-6 && found.distance < 0.01);
+        }
+        let near = step.near(point, found.triangle, 0.02);
+        let is_exact = near.distance == found.distance;
+        assert!(is_exact || (found.distance > 0.02 && near.distance < found.distance), "{point}");
+        assert!(near.distance >= 0.79 * found.distance || is_exact, "{point}: {}", near.distance);
+        bounds += usize::from(!is_exact);
+    }
+    assert!(still > 200 && bounds > 200, "{still} still, {bounds} bounds");
+    assert!(moving < 300, "{moving} are told to move");
+}
+
 /// Two tubes of one skin, one partly in the other: the triangles of each within the other are left out, so that both have
 /// holes.
 #[test]
