@@ -4,8 +4,6 @@ use std::ops::Range;
 
 use glam::{Vec3A, Vec4};
 
-use crate::skin_solid::SkinNode;
-
 /// Bits of 1.0: numbers behind it are finite and none is too small for quick arithmetic.
 const FIRST: u32 = 0x3f80_0000;
 /// Bits of the number of triangles of a leaf.
@@ -19,11 +17,10 @@ pub(crate) struct SkinBox([Vec4; 2]);
 impl SkinBox {
     pub const EMPTY: Self = Self([Vec4::ONE; 2]);
 
-    /// The box of a node with these corners.
-    pub fn new([min, max]: [Vec3A; 2], node: &SkinNode) -> Self {
-        let [first, behind] = node.range;
-        let triangles = if node.right == 0 { first << COUNT_BITS | (behind - first) } else { 0 };
-        let [right, triangles] = [node.right, triangles].map(|number| f32::from_bits(FIRST + number));
+    /// The box of a node with these corners, its right child, 0 for a leaf, and the range of its triangles.
+    pub fn new([min, max]: [Vec3A; 2], right: u32, [first, behind]: [u32; 2]) -> Self {
+        let triangles = if right == 0 { first << COUNT_BITS | (behind - first) } else { 0 };
+        let [right, triangles] = [right, triangles].map(|number| f32::from_bits(FIRST + number));
         Self([min.extend(right), max.extend(triangles)])
     }
 
@@ -56,7 +53,7 @@ mod tests {
     fn a_box_keeps_what_lies_below_it() {
         let corners = [Vec3A::new(-1.0, f32::MIN, 0.0), Vec3A::new(1e-30, 2.0, f32::MAX)];
         for (range, right) in [([0, 4], 0), ([100_000_000, 100_000_004], 0), ([7, 90], 1_000_000_000)] {
-            let found = SkinBox::new(corners, &SkinNode { range, right });
+            let found = SkinBox::new(corners, right, range);
             assert_eq!((found.corners(), found.right()), (corners, right));
             assert_eq!(found.triangles(), if right == 0 { range[0]..range[1] } else { 0..0 });
         }

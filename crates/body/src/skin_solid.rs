@@ -169,7 +169,7 @@ impl SkinSolid {
             let around = corners.fold([Vec3A::INFINITY, Vec3A::NEG_INFINITY], |[min, max], corner| {
                 [min.min(corner), max.max(corner)]
             });
-            SkinBox::new(around, node)
+            SkinBox::new(around, 0, node.range)
         };
         let mut boxes = vec![SkinBox::EMPTY; self.nodes.len()];
         let leaves = boxes.par_iter_mut().zip(&self.nodes).with_min_len(512);
@@ -177,7 +177,8 @@ impl SkinSolid {
         // Children lie behind their parents.
         for (index, node) in self.nodes.iter().enumerate().rev().filter(|(_, node)| node.right > 0) {
             let [left, right] = [boxes[index + 1].corners(), boxes[node.right as usize].corners()];
-            boxes[index] = SkinBox::new([left[0].min(right[0]), left[1].max(right[1])], node);
+            boxes[index] =
+                SkinBox::new([left[0].min(right[0]), left[1].max(right[1])], node.right, node.range);
         }
         boxes
     }

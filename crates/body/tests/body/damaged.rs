@@ -10,13 +10,17 @@ use strandline_base::Random;
 use strandline_base::npz::{Array, Kind, pack};
 use strandline_body::{BodyError, BodyFrame, Mesh, Playback, SkinMotion, SkinRoots, VertexMotion};
 
-use crate::clips::below;
 use crate::files::CUBE_OBJ;
 use crate::vertices::{faces, numbers};
 
 /// Damaged files of each kind.
 fn count() -> usize {
     if std::env::var_os("STRANDLINE_FULL").is_some_and(|value| value == "1") { 100_000 } else { 1000 }
+}
+
+/// A whole number below another.
+pub fn below(random: &mut Random, count: usize) -> usize {
+    (random.bits() as usize) % count
 }
 
 /// One of some values.

@@ -10,7 +10,7 @@ use glam::Vec3;
 use strandline_base::Random;
 use strandline_body::{BodyError, BodyFrame, Mesh, RecordedMotion, VertexMotion};
 
-use crate::damaged::{playbacks, rides, times};
+use crate::damaged::{below, playbacks, rides, times};
 use crate::files::{cube_bin, cube_json, glb, scratch};
 
 fn rig() -> PathBuf {
@@ -110,11 +110,6 @@ fn a_clip_is_not_interpolated_over_a_mark_of_its_extras() {
         let error = marked(marks).1.unwrap_err().to_string();
         assert!(error.contains("the extra `teleports` of the clip `linear`"), "{error}");
     }
-}
-
-/// A whole number below another.
-pub fn below(random: &mut Random, count: usize) -> usize {
-    (random.bits() as usize) % count
 }
 
 /// A number of the document replaced by another, or a word left out.
