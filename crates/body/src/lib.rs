@@ -58,6 +58,7 @@ mod rigid_fit;
 mod ring;
 mod scalp;
 mod scalp_place;
+mod skin_box;
 mod skin_line;
 mod skin_motion;
 mod skin_roots;

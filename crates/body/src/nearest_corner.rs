@@ -11,38 +11,55 @@ pub(crate) enum Feature {
     Corner(usize),
 }
 
-/// The place of a triangle nearest to a point, and the part where it lies \[Ericson2005\].
+/// The place of a triangle nearest to a point, and the part where it lies.
+#[inline]
 pub(crate) fn nearest_on([a, b, c]: [Vec3; 3], point: Vec3) -> (Vec3, Feature) {
+    let (feature, [to_b, to_c]) = nearest_shares([a, b, c], point);
+    let place = match feature {
+        Feature::Corner(corner) => [a, b, c][corner],
+        Feature::Edge(0) => a + (b - a) * to_b,
+        Feature::Edge(1) => b + (c - b) * to_c,
+        Feature::Edge(_) => a + (c - a) * to_c,
+        Feature::Face => a + (b - a) * to_b + (c - a) * to_c,
+    };
+    (place, feature)
+}
+
+/// The part of a triangle where its place nearest to a point lies, and the shares of the second and the third corner there
+/// \[Ericson2005\]; they are no numbers in a face without an area.
+#[inline]
+pub(crate) fn nearest_shares([a, b, c]: [Vec3; 3], point: Vec3) -> (Feature, [f32; 2]) {
     let (ab, ac, ap) = (b - a, c - a, point - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
     if d1 <= 0.0 && d2 <= 0.0 {
-        return (a, Feature::Corner(0));
+        return (Feature::Corner(0), [0.0, 0.0]);
     }
     let bp = point - b;
     let (d3, d4) = (ab.dot(bp), ac.dot(bp));
     if d3 >= 0.0 && d4 <= d3 {
-        return (b, Feature::Corner(1));
+        return (Feature::Corner(1), [1.0, 0.0]);
     }
     let vc = d1 * d4 - d3 * d2;
     if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return (a + ab * (d1 / (d1 - d3).max(f32::MIN_POSITIVE)), Feature::Edge(0));
+        return (Feature::Edge(0), [d1 / (d1 - d3).max(f32::MIN_POSITIVE), 0.0]);
     }
     let cp = point - c;
     let (d5, d6) = (ab.dot(cp), ac.dot(cp));
     if d6 >= 0.0 && d5 <= d6 {
-        return (c, Feature::Corner(2));
+        return (Feature::Corner(2), [0.0, 1.0]);
     }
     let vb = d5 * d2 - d1 * d6;
     if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return (a + ac * (d2 / (d2 - d6).max(f32::MIN_POSITIVE)), Feature::Edge(2));
+        return (Feature::Edge(2), [0.0, d2 / (d2 - d6).max(f32::MIN_POSITIVE)]);
     }
     let va = d3 * d6 - d5 * d4;
     let (to_c, to_b) = (d4 - d3, d5 - d6);
     if va <= 0.0 && to_c >= 0.0 && to_b >= 0.0 {
-        return (b + (c - b) * (to_c / (to_c + to_b).max(f32::MIN_POSITIVE)), Feature::Edge(1));
+        let share = to_c / (to_c + to_b).max(f32::MIN_POSITIVE);
+        return (Feature::Edge(1), [1.0 - share, share]);
     }
     let sum = va + vb + vc;
-    (a + ab * (vb / sum) + ac * (vc / sum), Feature::Face)
+    (Feature::Face, [vb / sum, vc / sum])
 }
 
 #[cfg(test)]

@@ -7,7 +7,8 @@ use strandline_base::par::{self, prelude::*};
 use strandline_base::{LANES, Vec3Lanes};
 
 use crate::local_shifts::LocalShifts;
-use crate::nearest_corner::{Feature, nearest_on};
+use crate::nearest_corner::{Feature, nearest_on, nearest_shares};
+use crate::skin_box::SkinBox;
 use crate::skin_solid::{NONE, SkinSolid};
 use crate::{BodyFrame, Carrier, Collider, Shape};
 
@@ -18,8 +19,8 @@ const TOUCHING: f32 = 1e-5;
 /// Share of the distance that the quick search may be off, and the lower bound that it leaves.
 const QUICK: f32 = 0.64;
 const AT_LEAST: f32 = 0.8;
-/// Distance \[m\] beyond which a bound serves contacts.
-const FAR: f32 = 0.03;
+/// Way \[m\] of a skin through a step below which it stands still for what lies about it.
+const STILL: f32 = 1e-6;
 
 /// A skin at the start and at the end of a step.
 #[derive(Clone, Debug)]
@@ -29,8 +30,8 @@ pub struct PosedSkin {
     made_of: [Option<Arc<[Vec3]>>; 2],
     pub(crate) start: Vec<Vec3>,
     pub(crate) end: Vec<Vec3>,
-    /// Corners of the box of each node at the end.
-    pub(crate) boxes: Vec<[Vec3A; 2]>,
+    /// Box of each node at the end.
+    pub(crate) boxes: Vec<SkinBox>,
     most_shift: f32,
     /// Ways of triangles by their place; none where nothing moves.
     shifts: Option<LocalShifts>,
@@ -97,7 +98,8 @@ impl PosedSkin {
         let boxes_and_shifts = || {
             let boxes = solid.boxes_about(&end);
             let leaves = |part: usize| solid.shifts_of_leaves(part, &boxes, &squares);
-            let shifts = if moves { LocalShifts::new(boxes[0], solid.part_count(), leaves) } else { None };
+            let shifts =
+                if moves { LocalShifts::new(boxes[0].corners(), solid.part_count(), leaves) } else { None };
             (boxes, shifts)
         };
         let drift = |corners: &[u32; 3]| {
@@ -173,17 +175,15 @@ impl PosedSkin {
         self.seen(point, triangle, squared.sqrt())
     }
 
-    /// The same; farther than 3 cm outside a lower bound of the distance, no less than 0.8 of it, and the gradient at about
-    /// the nearest place.
-    pub fn near(&self, point: Vec3, before: u32) -> SkinPlace {
-        let is_known = (before as usize) < self.solid.triangles.len();
-        if is_known
-            && point.distance_squared(nearest_on(self.corners(&self.end, before), point).0) <= FAR * FAR
-        {
+    /// The same; farther than `far` \[m\] outside a lower bound of the distance, no less than 0.8 of it, and the gradient at
+    /// about the nearest place.
+    pub fn near(&self, point: Vec3, before: u32, far: f32) -> SkinPlace {
+        let square = far * far;
+        if self.square_from(before, point).is_some_and(|squared| squared <= square) {
             return self.nearest(point, before);
         }
         let (triangle, squared) = self.search(point, before, QUICK);
-        if squared > FAR * FAR {
+        if squared > square {
             let found = self.seen(point, triangle, squared.sqrt());
             if found.distance > 0.0 {
                 return SkinPlace { distance: AT_LEAST * found.distance, ..found };
@@ -206,11 +206,10 @@ impl PosedSkin {
     /// The same by a search that begins at a triangle near the point, and a triangle nearer to it. Bounds of no more than
     /// `enough` \[m\] are not looked for: 0 where that triangle is so near already.
     pub fn at_least_about(&self, point: Vec3, before: u32, enough: f32) -> (f32, u32) {
-        if enough > 0.0 && (before as usize) < self.solid.triangles.len() {
-            let place = nearest_on(self.corners(&self.end, before), point).0;
-            if AT_LEAST * point.distance(place) <= enough {
-                return (0.0, before);
-            }
+        if enough > 0.0
+            && self.square_from(before, point).is_some_and(|squared| AT_LEAST * squared.sqrt() <= enough)
+        {
+            return (0.0, before);
         }
         let (triangle, squared) = self.search(point, before, QUICK);
         (AT_LEAST * self.seen(point, triangle, squared.sqrt()).distance.max(0.0), triangle)
@@ -222,13 +221,29 @@ impl PosedSkin {
         self.search(point, before, QUICK).0
     }
 
+    /// Squared distance \[m^2\] of a point \[m\] from a triangle at the end of the step; `None` of an unknown one.
+    fn square_from(&self, triangle: u32, point: Vec3) -> Option<f32> {
+        let is_known = (triangle as usize) < self.solid.triangles.len();
+        is_known.then(|| point.distance_squared(nearest_on(self.corners(&self.end, triangle), point).0))
+    }
+
+    /// True where the skin nearest to a point \[m\] at the end of the step, head space, stands still through the step, as the
+    /// ways about the point and the distance of any triangle show, such as `before`. No search is made.
+    pub fn is_still_about(&self, point: Vec3, before: u32) -> bool {
+        // Skin within the reach of the ways about a point has moved no more than these.
+        self.shifts.as_ref().map_or(self.most_shift == 0.0, |shifts| {
+            let within = shifts.reach() * shifts.reach();
+            shifts.about(point) < STILL
+                && self.square_from(before, point).is_some_and(|squared| squared < within)
+        })
+    }
+
     /// The nearest triangle, and its squared distance; nodes are left out whose squared distance is more than `slack`
     /// times that of the best.
     fn search(&self, point: Vec3, before: u32, slack: f32) -> (u32, f32) {
-        let nodes = &self.solid.nodes;
         let wide = Vec3A::from(point);
         let from_box = |index: u32| {
-            let [min, max] = self.boxes[index as usize];
+            let [min, max] = self.boxes[index as usize].corners();
             wide.distance_squared(wide.max(min).min(max))
         };
         let from_triangle = |index: u32| {
@@ -245,10 +260,10 @@ impl PosedSkin {
             if squared >= slack * best.1 {
                 continue;
             }
-            let node = nodes[index as usize];
-            if node.right == 0 {
-                looks += u64::from(node.range[1] - node.range[0]);
-                for triangle in node.range[0]..node.range[1] {
+            let node = self.boxes[index as usize];
+            if node.right() == 0 {
+                looks += node.triangles().len() as u64;
+                for triangle in node.triangles() {
                     let squared = from_triangle(triangle);
                     if squared < best.1 {
                         best = (triangle, squared);
@@ -256,7 +271,7 @@ impl PosedSkin {
                 }
                 continue;
             }
-            let children = [index + 1, node.right].map(|child| (from_box(child), child));
+            let children = [index + 1, node.right()].map(|child| (from_box(child), child));
             let [near, far] =
                 if children[0].0 <= children[1].0 { children } else { [children[1], children[0]] };
             for child in [far, near] {
@@ -321,9 +336,8 @@ impl PosedSkin {
             return Vec3::ZERO;
         }
         let corners = self.corners(&self.end, triangle);
-        let place = nearest_on(corners, point).0;
-        let before = at_shares(self.corners(&self.start, triangle), shares(corners, place));
-        at_shares(corners, shares(corners, place)) - before
+        let shares = shares(corners, point);
+        at_shares(corners, shares) - at_shares(self.corners(&self.start, triangle), shares)
     }
 
     /// Mean way \[m\] of the corners of a triangle through the step; none of an unknown one.
@@ -339,11 +353,11 @@ impl PosedSkin {
         }
         let [start, end] = [&self.start, &self.end].map(|positions| self.corners(positions, triangle));
         let turn = axes(end)? * axes(start)?.transpose();
-        let shares = shares(start, nearest_on(start, point).0);
+        let shares = shares(start, point);
         let motion =
             TriangleMotion { start: at_shares(start, shares), end: at_shares(end, shares), turn, error: 0.0 };
-        let errors = start.iter().zip(end).map(|(start, end)| motion.point(*start).distance(end));
-        Some(TriangleMotion { error: errors.fold(0.0, f32::max), ..motion })
+        let errors = start.iter().zip(end).map(|(start, end)| motion.point(*start).distance_squared(end));
+        Some(TriangleMotion { error: errors.fold(0.0, f32::max).sqrt(), ..motion })
     }
 }
 
@@ -354,14 +368,11 @@ fn axes([a, b, c]: [Vec3; 3]) -> Option<Mat3> {
     Some(Mat3::from_cols(along, normal, along.cross(normal)))
 }
 
-/// Shares of the corners in a place of a triangle.
-fn shares([a, b, c]: [Vec3; 3], place: Vec3) -> Vec3 {
-    let normal = (b - a).cross(c - a);
-    let area = normal.length_squared();
-    let part = |start: Vec3, end: Vec3| ((end - start).cross(place - start).dot(normal) / area).max(0.0);
-    let shares = Vec3::new(part(b, c), part(c, a), part(a, b));
-    let sum = shares.element_sum();
-    if sum.is_finite() && sum > 0.0 { shares / sum } else { Vec3::X }
+/// Shares of the corners in the place of a triangle that is nearest to a point.
+fn shares(corners: [Vec3; 3], point: Vec3) -> Vec3 {
+    let (_, [to_b, to_c]) = nearest_shares(corners, point);
+    let shares = Vec3::new(1.0 - to_b - to_c, to_b, to_c);
+    if shares.is_finite() { shares } else { Vec3::X }
 }
 
 fn at_shares([a, b, c]: [Vec3; 3], shares: Vec3) -> Vec3 {

@@ -49,7 +49,7 @@ impl PosedSkin {
         if !(length > 0.0 && length.is_finite() && places.first.is_finite()) {
             return Some(sides);
         }
-        let [min, max] = self.boxes[0];
+        let [min, max] = self.boxes[0].corners();
         let largest = min.abs().max(max.abs()).max(places.first.abs().into()).max_element();
         let line = Line::new(places.first, places.step / length, ROUNDING * largest);
         let count = places.count.min(MOST_PLACES);
@@ -79,26 +79,29 @@ impl PosedSkin {
     /// Calls for each triangle that a line crosses, with the way \[m\] along the line, and 1 where the line leaves through its
     /// front, -1 where it enters.
     fn cross(&self, line: &Line, mut crossed: impl FnMut(f64, i32)) {
-        let nodes = &self.solid.nodes;
         self.solid.tally.lines.add(1);
         let (mut waiting, mut count) = ([0_u32; DEPTH], 1);
         while count > 0 {
             count -= 1;
             let index = waiting[count];
-            if !line.meets(self.boxes[index as usize]) {
+            let node = self.boxes[index as usize];
+            if !line.meets(node.corners()) {
                 continue;
             }
-            let node = nodes[index as usize];
-            if node.right == 0 {
-                for triangle in node.range[0]..node.range[1] {
-                    let flat = self.corners(&self.end, triangle).map(|corner| line.flat(corner));
-                    if let Some((height, turn)) = crossing(flat) {
+            if node.right() == 0 {
+                for triangle in node.triangles() {
+                    let offsets = self.corners(&self.end, triangle).map(|corner| line.offset(corner));
+                    // Most triangles lie to one side.
+                    if line.are_aside(&offsets) {
+                        continue;
+                    }
+                    if let Some((height, turn)) = crossing(offsets.map(|offset| line.flat(offset))) {
                         crossed(height, turn);
                     }
                 }
                 continue;
             }
-            waiting[count] = node.right;
+            waiting[count] = node.right();
             waiting[count + 1] = index + 1;
             count += 2;
         }
@@ -120,9 +123,19 @@ impl Line {
         self.across.iter().all(|axis| axis.dot(offset).abs() <= axis.abs().dot(half) + self.slack)
     }
 
-    /// A corner across the line, and along it \[m\].
-    fn flat(&self, corner: Vec3) -> (DVec2, f64) {
-        let offset = corner.as_dvec3() - Vec3::from(self.origin).as_dvec3();
+    /// A corner from the origin \[m\].
+    fn offset(&self, corner: Vec3) -> DVec3 {
+        corner.as_dvec3() - Vec3::from(self.origin).as_dvec3()
+    }
+
+    /// True for corners that all lie on one side of a plane through the line: it crosses no triangle of them.
+    fn are_aside(&self, offsets: &[DVec3; 3]) -> bool {
+        let [one, two, three] = offsets.map(|offset| self.axes[1].dot(offset) > 0.0);
+        one == two && two == three
+    }
+
+    /// A corner by its offset \[m\], across the line and along it.
+    fn flat(&self, offset: DVec3) -> (DVec2, f64) {
         let [one, other, along] = self.axes.map(|axis| axis.dot(offset));
         (DVec2::new(one, other), along)
     }

@@ -11,6 +11,10 @@ use crate::polar::rotation_of;
 use crate::welding::welded_vertices;
 use crate::{BodyFrame, Mesh, Pose};
 
+/// Difference \[m\] of coordinates that turns of the head leave on a skin that rides it: of a triangle of 1 mm it is a thousandth
+/// of a degree.
+const ROUNDING: f32 = 2e-7;
+
 /// Roots, each at a place of a triangle: they follow the skin of a body frame.
 ///
 /// The rotation of the skin at a vertex is that of the deformation of the triangles around it, by least squares weighted
@@ -184,7 +188,8 @@ impl SkinRoots {
     /// no area.
     fn rotation(&self, corner: &Corner, skin: &[Vec3], side: f64) -> Option<DQuat> {
         let ring = &self.ring[corner.ring.clone()];
-        if ring.iter().all(|known| skin[known.vertex as usize] == known.rest) {
+        let is_at_rest = |known: &RingVertex| skin[known.vertex as usize].abs_diff_eq(known.rest, ROUNDING);
+        if ring.iter().all(is_at_rest) {
             return Some(DQuat::IDENTITY);
         }
         let origin = skin[ring.first()?.vertex as usize].as_dvec3();

@@ -9,6 +9,9 @@ use crate::posed_skin::DEPTH;
 use crate::skin_line::crossing;
 use crate::skin_solid::NONE;
 
+/// Distance \[m\] beyond which a point needs no exact one to lie outside.
+const FAR: f32 = 0.01;
+
 /// A half line along an axis.
 struct Ray {
     origin: Vec3,
@@ -22,7 +25,7 @@ impl PosedSkin {
     /// a half line crosses, where [`Self::nearest`] has that of the faces about the nearest place. The search begins at a
     /// triangle near the point.
     pub fn depth(&self, point: Vec3, before: u32) -> f32 {
-        let found = self.near(point, before);
+        let found = self.near(point, before, FAR);
         if found.distance >= 0.0 {
             return 0.0;
         }
@@ -58,24 +61,23 @@ impl PosedSkin {
     fn winds_around(&self, point: Vec3, away: Vec3) -> bool {
         let axis = away.abs().max_position();
         let ray = Ray { origin: point, axis, way: 1f32.copysign(away[axis]) };
-        let nodes = &self.solid.nodes;
         let (mut waiting, mut count) = ([0_u32; DEPTH], 1);
         let mut crossings = 0;
         while count > 0 {
             count -= 1;
             let index = waiting[count];
-            let [min, max] = self.boxes[index as usize].map(Vec3::from);
+            let node = self.boxes[index as usize];
+            let [min, max] = node.corners().map(Vec3::from);
             if !ray.meets(min, max) {
                 continue;
             }
-            let node = nodes[index as usize];
-            if node.right == 0 {
-                let triangles = node.range[0]..node.range[1];
+            if node.right() == 0 {
+                let triangles = node.triangles();
                 crossings +=
                     triangles.map(|triangle| ray.crossing(self.corners(&self.end, triangle))).sum::<i32>();
                 continue;
             }
-            waiting[count] = node.right;
+            waiting[count] = node.right();
             waiting[count + 1] = index + 1;
             count += 2;
         }

@@ -8,6 +8,7 @@ use strandline_base::par::prelude::*;
 
 use crate::inside_out::{RestVolume, side_of};
 use crate::mesh_distance::skin_triangles;
+use crate::skin_box::SkinBox;
 use crate::welding::welded_vertices;
 use crate::{Aabb, BodyError, DistanceGrid, Mesh};
 
@@ -160,22 +161,24 @@ impl SkinSolid {
         [side, before].map(|side| side * self.facing)
     }
 
-    /// Boxes of all nodes about positions \[m\]: their least and greatest corners.
-    pub(crate) fn boxes_about(&self, positions: &[Vec3]) -> Vec<[Vec3A; 2]> {
+    /// Boxes of all nodes about positions \[m\].
+    pub(crate) fn boxes_about(&self, positions: &[Vec3]) -> Vec<SkinBox> {
         let about = |node: &SkinNode| {
             let triangles = &self.triangles[node.range[0] as usize..node.range[1] as usize];
             let corners = triangles.iter().flatten().map(|corner| Vec3A::from(positions[*corner as usize]));
-            corners.fold([Vec3A::INFINITY, Vec3A::NEG_INFINITY], |[min, max], corner| {
+            let around = corners.fold([Vec3A::INFINITY, Vec3A::NEG_INFINITY], |[min, max], corner| {
                 [min.min(corner), max.max(corner)]
-            })
+            });
+            SkinBox::new(around, 0, node.range)
         };
-        let mut boxes = vec![[Vec3A::ZERO; 2]; self.nodes.len()];
+        let mut boxes = vec![SkinBox::EMPTY; self.nodes.len()];
         let leaves = boxes.par_iter_mut().zip(&self.nodes).with_min_len(512);
         leaves.filter(|(_, node)| node.right == 0).for_each(|(corners, node)| *corners = about(node));
         // Children lie behind their parents.
         for (index, node) in self.nodes.iter().enumerate().rev().filter(|(_, node)| node.right > 0) {
-            let [left, right] = [boxes[index + 1], boxes[node.right as usize]];
-            boxes[index] = [left[0].min(right[0]), left[1].max(right[1])];
+            let [left, right] = [boxes[index + 1].corners(), boxes[node.right as usize].corners()];
+            boxes[index] =
+                SkinBox::new([left[0].min(right[0]), left[1].max(right[1])], node.right, node.range);
         }
         boxes
     }
@@ -194,14 +197,14 @@ impl SkinSolid {
     pub(crate) fn shifts_of_leaves<'a>(
         &'a self,
         part: usize,
-        boxes: &'a [[Vec3A; 2]],
+        boxes: &'a [SkinBox],
         squares: &'a [f32],
     ) -> impl Iterator<Item = ([Vec3A; 2], f32)> + 'a {
         let nodes = self.nodes.iter().zip(boxes).skip(part * self.part_size()).take(self.part_size());
-        nodes.filter(|(node, _)| node.right == 0).map(|(node, corners)| {
+        nodes.filter(|(node, _)| node.right == 0).map(|(node, around)| {
             let triangles = &self.triangles[node.range[0] as usize..node.range[1] as usize];
             let all = triangles.iter().flatten().map(|corner| squares[*corner as usize]);
-            (*corners, all.fold(0.0, f32::max))
+            (around.corners(), all.fold(0.0, f32::max))
         })
     }
 

@@ -1,7 +1,8 @@
 //! Skins that move by themselves as rows of four words, which shaders read: skin_table.wesl.
 
-use glam::{Vec3, Vec3A};
+use glam::Vec3;
 
+use crate::skin_box::SkinBox;
 use crate::skin_solid::SkinSolid;
 use crate::{BodyFrame, Collider, PosedSkin, Shape};
 
@@ -116,16 +117,17 @@ fn triangle_rows(skin: &SkinSolid, facing: f32) -> impl Iterator<Item = [u32; 4]
 }
 
 /// The rows of nodes and vertices: what changes when the skin moves.
-fn moving_rows(skin: &SkinSolid, boxes: &[[Vec3A; 2]], [start, end]: [&[Vec3]; 2]) -> Vec<[u32; 4]> {
+fn moving_rows(skin: &SkinSolid, boxes: &[SkinBox], [start, end]: [&[Vec3]; 2]) -> Vec<[u32; 4]> {
     let vector = |vector: Vec3, last: u32| {
         let [x, y, z] = vector.to_array().map(f32::to_bits);
         [x, y, z, last]
     };
     let mut rows = Vec::with_capacity(ROWS * (boxes.len() + end.len()));
-    for (node, [min, max]) in skin.nodes.iter().zip(boxes) {
+    for (node, around) in skin.nodes.iter().zip(boxes) {
+        let [min, max] = around.corners();
         let [first, behind] = node.range;
         let leaf = if node.right == 0 { first * LEAF_CODE + (behind - first) } else { 0 };
-        rows.extend([vector((*min).into(), node.right), vector((*max).into(), leaf)]);
+        rows.extend([vector(min.into(), node.right), vector(max.into(), leaf)]);
     }
     for (vertex, (start, end)) in start.iter().zip(end).enumerate() {
         let [first, behind] = skin.range_around(vertex as u32);

@@ -1,5 +1,5 @@
 //! Damaged motions of vertices, arrays of numpy and sequences of .obj files: each is refused clearly, or all its vertices,
-//! its head and roots on it are somewhere at any time.
+//! its head and roots on it are somewhere at any time, played forward and backward.
 //!
 //! `STRANDLINE_FULL=1` looks at a hundred times as many.
 
@@ -10,13 +10,17 @@ use strandline_base::Random;
 use strandline_base::npz::{Array, Kind, pack};
 use strandline_body::{BodyError, BodyFrame, Mesh, Playback, SkinMotion, SkinRoots, VertexMotion};
 
-use crate::clips::below;
 use crate::files::CUBE_OBJ;
 use crate::vertices::{faces, numbers};
 
 /// Damaged files of each kind.
 fn count() -> usize {
     if std::env::var_os("STRANDLINE_FULL").is_some_and(|value| value == "1") { 100_000 } else { 1000 }
+}
+
+/// A whole number below another.
+pub fn below(random: &mut Random, count: usize) -> usize {
+    (random.bits() as usize) % count
 }
 
 /// One of some values.
@@ -32,7 +36,7 @@ struct Told {
 }
 
 impl Told {
-    fn look(&mut self, loaded: Result<(Mesh, VertexMotion), BodyError>) {
+    fn look(&mut self, loaded: Result<(Mesh, VertexMotion), BodyError>, random: &mut Random) {
         match loaded {
             Err(error) => {
                 let text = error.to_string();
@@ -40,31 +44,45 @@ impl Told {
                 self.refused += 1;
             }
             Ok((mesh, motion)) => {
-                rides(&mesh, motion);
+                // Between two places that are far from each other single precision may end.
+                for time in [f64::NEG_INFINITY, motion.end()] {
+                    assert!(motion.positions(time).iter().all(|place| place.is_finite()), "at {time}");
+                }
+                rides(&mesh, motion, random);
                 self.drawn += 1;
             }
         }
     }
 }
 
-/// The vertices, the head and roots of a body are somewhere, played forward, and backward round and round.
-fn rides(mesh: &Mesh, motion: VertexMotion) {
+/// Ways to play a motion: forward, backward, and any, each of them also round and round.
+pub fn playbacks(random: &mut Random) -> [Playback; 3] {
+    let mut number = || one_of(&[0.0, -0.3, 1.0, -1.5, 1e-9, -1e300], random);
+    let [start, speed] = [number(), number()];
+    let any = Playback { start, speed, is_loop: below(random, 2) == 0 };
+    [Playback::default(), Playback { start: 0.3, speed: -1.5, is_loop: true }, any]
+}
+
+/// Times of a scene \[s\], in no order: of a few seconds, and far ones.
+pub fn times(random: &mut Random) -> [f64; 6] {
+    let [near, far] = [3.0, 1e9].map(|most| most * f64::from(random.signed()));
+    [0.4, near, -1.0, far, f64::NAN, 1e300]
+}
+
+/// The vertices, the head and roots of a body are somewhere, however it is played.
+pub fn rides(mesh: &Mesh, motion: VertexMotion, random: &mut Random) {
     let places = &mesh.positions;
     assert_eq!(motion.vertex_count(), places.len());
-    // Between two places that are far from each other single precision may end.
-    for time in [f64::NEG_INFINITY, motion.end()] {
-        assert!(motion.positions(time).iter().all(|place| place.is_finite()), "at {time}");
-    }
-    let backward = Playback { start: 0.3, speed: -1.5, is_loop: true };
-    for playback in [Playback::default(), backward] {
+    let roots = SkinRoots::new(mesh, &[places[0], places[places.len() / 2] * 1.01]);
+    for playback in playbacks(random) {
         let body = SkinMotion::new(motion.clone(), playback, places, (1.0, Quat::IDENTITY), &[]).unwrap();
-        let roots = SkinRoots::new(mesh, &[places[0], places[places.len() / 2] * 1.01]);
         let mut last = BodyFrame::REST;
-        for time in [-1.0, 0.3, 0.4, 1.9, f64::NAN, 1e300] {
+        for time in times(random) {
             last = roots.placed(body.frame(time), &last);
-            last.check(Some(2), Some(places.len())).unwrap();
+            let found = last.check(Some(2), Some(places.len()));
+            assert!(found.is_ok(), "{found:?} at {time} of {playback:?}");
         }
-        assert!(body.gaps_of_loops().iter().all(|gap| gap.is_finite()));
+        assert!(body.gaps_of_loops().iter().all(|gap| gap.is_finite()), "{playback:?}");
     }
 }
 
@@ -137,10 +155,10 @@ fn damaged_arrays_are_refused_or_drawn() {
         let mut bytes = pack(&arrays);
         damage(&mut bytes, &mut random);
         std::fs::write(&npz, &bytes).unwrap();
-        whole.look(Mesh::load_sequence(&npz, 24.0));
+        whole.look(Mesh::load_sequence(&npz, 24.0), &mut random);
         for path in [&npz, &npy] {
             let loaded = VertexMotion::load(path, &mesh, Some(&obj), 24.0);
-            beside.look(loaded.map(|motion| (mesh.clone(), motion)));
+            beside.look(loaded.map(|motion| (mesh.clone(), motion)), &mut random);
         }
     }
     let least = |told: &Told, files: usize| told.refused * 4 > files && told.drawn * 8 > files;
@@ -199,7 +217,8 @@ fn damaged_sequences_are_refused_or_drawn() {
             write(folder.path(), name, text);
         }
         let path = one_of(&[&*pattern, folder.path()], &mut random);
-        told.look(Mesh::load_sequence(path, one_of(&[24.0, 0.001, 10_000.0], &mut random)));
+        let rate = one_of(&[24.0, 0.001, 10_000.0], &mut random);
+        told.look(Mesh::load_sequence(path, rate), &mut random);
         for name in names {
             // Two files may have one name.
             let _ = std::fs::remove_file(folder.path().join(name));

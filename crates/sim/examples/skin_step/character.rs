@@ -50,16 +50,26 @@ fn draped(mannequin: &Mannequin, root: Vec3, normal: Vec3) -> Vec<Vec3> {
     points
 }
 
+/// Place of a direction along a curve through cells (Morton's), on which neighbours are near, as in hair that grows here.
+fn along_curve(direction: Vec3) -> u32 {
+    let cells = ((direction + 1.0) * 512.0).to_array().map(|along| along as u32);
+    (0..10).flat_map(|bit| cells.map(|cell| cell >> bit & 1)).rev().fold(0, |place, bit| place << 1 | bit)
+}
+
 /// So many strands all over the scalp.
 pub fn guides(strands: usize) -> Guides {
     let mannequin = Mannequin::new();
-    let mut groom = Groom::empty(8e-5);
-    for strand in 0..strands {
+    let direction = |strand: usize| {
         let share = (strand as f32 + 0.5) / strands as f32;
         let around = 2.399_963 * strand as f32;
         let (up, ring) = (1.0 - 0.8 * share, (1.0 - (1.0 - 0.8 * share).powi(2)).sqrt());
-        let (root, normal) = mannequin
-            .nearest_skin(0.1 * vec3(ring * around.cos(), up, ring * around.sin()) + vec3(0.0, 0.03, 0.0));
+        vec3(ring * around.cos(), up, ring * around.sin())
+    };
+    let mut directions: Vec<Vec3> = (0..strands).map(direction).collect();
+    directions.sort_by_key(|direction| along_curve(*direction));
+    let mut groom = Groom::empty(8e-5);
+    for direction in directions {
+        let (root, normal) = mannequin.nearest_skin(0.1 * direction + vec3(0.0, 0.03, 0.0));
         groom.push(draped(&mannequin, root, normal));
     }
     Guides::resample(&groom, POINTS).expect("guides")

@@ -184,7 +184,7 @@ impl<'a> Solids<'a> {
             }
             let plane = &mut planes[number * self.points + point];
             let mut rider = riders.get_mut(point).filter(|_| group.skin.is_some());
-            let look = group.refresh(plane, rider.as_deref_mut(), position, start, reach, care.stale);
+            let look = group.refresh(plane, rider.as_deref_mut(), &query, reach);
             let near = look.near & free;
             if !near.any() {
                 continue;
@@ -261,6 +261,18 @@ impl<'a> Solids<'a> {
     }
 }
 
+/// Depth \[m\] in a skin, and distance \[m\] from it, that a look finds exactly.
+pub(super) struct Exact {
+    pub depth: f32,
+    pub distance: f32,
+}
+
+/// Distance \[m\] from a skin beyond which a bound serves points that keep a margin \[m\]: 0.8 of it is more than what a plane may be
+/// behind, and its reach.
+fn bounded_beyond(margin: f32) -> f32 {
+    1.25 * (Care::ROUGH.stale + Care::ROUGH.near + margin)
+}
+
 /// Masks of lanes after a look.
 struct Look {
     /// Lanes that may be nearer than the requested distance.
@@ -293,20 +305,13 @@ impl Group<'_> {
 
     /// Renews planes that are out of date, for points that matter only within `reach` \[m\] of a solid.
     ///
-    /// Paths begin where points that lay at `start` \[m\] and stuck to the solid are.
-    fn refresh(
-        &self,
-        plane: &mut Plane,
-        mut rider: Option<&mut Plane>,
-        position: Vec3x8,
-        start: Option<Vec3x8>,
-        reach: f32x8,
-        stale: f32,
-    ) -> Look {
+    /// Paths begin where points that lay at the start of the query and stuck to the solid are.
+    fn refresh(&self, plane: &mut Plane, mut rider: Option<&mut Plane>, query: &Query, reach: f32x8) -> Look {
+        let Query { position, start, margin, care, .. } = *query;
         let local = self.carrier_from_world.points(position);
         let moved = (local - Vec3x8::load(&plane.anchor)).length();
         let near = (load(&plane.distance) - moved).simd_le(reach);
-        let stale = (near & moved.simd_gt(splat(stale))).to_bitmask();
+        let stale = (near & moved.simd_gt(splat(care.stale))).to_bitmask();
         if stale == 0 {
             return Look { near, blocked: splat(0.0) };
         }
@@ -318,8 +323,8 @@ impl Group<'_> {
         for lane in (0..LANES).filter(|lane| stale & (1 << lane) != 0) {
             let triangle =
                 Cell::new(rider.as_mut().map_or(PosedSkin::UNKNOWN, |rider| Rider(rider).triangle(lane)));
-            let seen =
-                met(from.get(lane), here.get(lane), |point| self.nearest(point, &triangle, MOST_DEPTH));
+            let exact = Exact { depth: MOST_DEPTH, distance: bounded_beyond(margin.to_array()[lane]) };
+            let seen = met(from.get(lane), here.get(lane), |point| self.nearest(point, &triangle, &exact));
             if seen.is_before(here.get(lane)) {
                 blocked[lane] = f32::from_bits(u32::MAX);
             }
@@ -345,16 +350,16 @@ impl Group<'_> {
         self.colliders.iter().map(depth).fold(0.0, f32::max)
     }
 
-    /// The nearest solid, and a triangle of a skin for the next look. Points deeper in a skin than `most_depth` \[m\] are
-    /// taken for that deep.
-    pub(super) fn nearest(&self, point: Vec3, triangle: &Cell<u32>, most_depth: f32) -> Seen {
+    /// The nearest solid, and a triangle of a skin for the next look. Points deeper in a skin, or farther from it, than is
+    /// exact have a bound of their distance.
+    pub(super) fn nearest(&self, point: Vec3, triangle: &Cell<u32>, exact: &Exact) -> Seen {
         let mut nearest = Seen { place: point, distance: f32::INFINITY, normal: Vec3::Y, friction: 0.0 };
         for (collider, skin) in &self.colliders {
             let (distance, normal) = match skin {
                 Some(skin) => {
-                    let found = skin.near(point, triangle.get());
+                    let found = skin.near(point, triangle.get(), exact.distance);
                     triangle.set(found.triangle);
-                    (found.distance.max(-most_depth), found.normal)
+                    (found.distance.max(-exact.depth), found.normal)
                 }
                 None => collider.shape.distance_and_gradient(point),
             };

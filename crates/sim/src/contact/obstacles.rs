@@ -229,6 +229,23 @@ impl<'a> Obstacles<'a> {
         Some(self.velocity(0, point, before, true))
     }
 
+    /// The same at a point of a skin that moves by itself, the only solid: `before` is a triangle about as near as `enough` \[m\], or
+    /// a nearer one is searched for. Where the skin about the point stands still it moves with its carrier, without a search.
+    pub fn velocity_within(&self, point: Vec3, before: &mut u32, enough: f32) -> Option<Vec3> {
+        if !self.is_still_about(point, *before) {
+            self.at_least_or(point, before, enough);
+        }
+        self.velocity_there(point, before)
+    }
+
+    /// True where a skin that moves by itself is the only solid and stands still about a point in the space of its carrier.
+    fn is_still_about(&self, point: Vec3, before: u32) -> bool {
+        match (self.colliders, &self.skins[..]) {
+            ([collider], [Some(skin)]) => skin.is_still_about(self.local(collider, point), before),
+            _ => false,
+        }
+    }
+
     /// Mean velocity \[m/s\] over the step of the material of a collider that ends at `point`.
     /// `before` is a triangle near the point already where `is_near`.
     fn velocity(&self, collider: usize, point: Vec3, before: &mut u32, is_near: bool) -> Vec3 {
@@ -238,6 +255,9 @@ impl<'a> Obstacles<'a> {
                 let Placed { start, piece_from_world, .. } = self.pieces[usize::from(piece)];
                 let local = piece_from_world.point(point);
                 let shift = self.skins[collider].as_ref().map_or(Vec3::ZERO, |skin| {
+                    if skin.is_still_about(local, *before) {
+                        return Vec3::ZERO;
+                    }
                     if !is_near {
                         *before = skin.triangle_about(local, *before);
                     }

@@ -11,7 +11,7 @@ use strandline_base::vec3x8::{Vec3x8, load, splat};
 use strandline_body::PosedSkin;
 use strandline_groom::{LANES, Vec3Lanes};
 
-use super::contacts::{Group, Solids};
+use super::contacts::{Care, Group, Solids};
 use super::planes::{Contacts, Plane, Rider};
 
 /// Distance \[m\] from the skin within which a plane rides a triangle.
@@ -21,6 +21,9 @@ const CLOSE: f32 = 0.02;
 const MOST_OFF: f32 = 5e-4;
 const OF_ERROR: f32 = 2.0;
 const OF_SHIFT: f32 = 0.02;
+/// Distance \[m\] beyond the margin of points from which on a plane that riding has moved off its place stays as a bound that is so
+/// much less: what a point moves before a look.
+const LOOSE: f32 = Care::ROUGH.stale + 1e-3;
 /// Way \[m\] of the skin about a plane through a step below which the plane stays where it is.
 const STILL: f32 = 1e-6;
 /// Most that a vertex may move \[m\] where planes stay: their triangles end within reach of where they were.
@@ -56,8 +59,9 @@ impl Group<'_> {
 }
 
 impl Contacts {
-    /// Carries the planes on skins from the start of a step to its end.
-    pub fn ride(&mut self, solids: &Solids) {
+    /// Carries the planes on skins from the start of a step to its end, of points that keep a margin \[m\].
+    pub fn ride(&mut self, solids: &Solids, margin: f32) {
+        let loose = LOOSE + margin;
         let points = solids.points();
         let skins: Vec<(usize, &PosedSkin)> = solids.skins().collect();
         if skins.is_empty() {
@@ -68,13 +72,16 @@ impl Contacts {
             let (planes, riders) = planes.split_at_mut(carriers * points);
             for (group, skin) in &skins {
                 let planes = &mut planes[group * points..(group + 1) * points];
-                planes.iter_mut().zip(riders.iter_mut()).for_each(|(plane, rider)| ride(plane, rider, skin));
+                planes
+                    .iter_mut()
+                    .zip(riders.iter_mut())
+                    .for_each(|(plane, rider)| ride(plane, rider, skin, loose));
             }
         });
     }
 }
 
-fn ride(plane: &mut Plane, rider: &mut Plane, skin: &PosedSkin) {
+fn ride(plane: &mut Plane, rider: &mut Plane, skin: &PosedSkin, loose: f32) {
     let most = skin.most_shift();
     let shifts = if most == 0.0 { [0.0; LANES] } else { skin.shifts_about(&plane.anchor) };
     for (lane, shift) in shifts.into_iter().enumerate() {
@@ -96,9 +103,7 @@ fn ride(plane: &mut Plane, rider: &mut Plane, skin: &PosedSkin) {
         if shift < STILL && most < SLOW {
             rider.anchor.set(lane, Vec3::ZERO);
             rider.distance.0[lane] += (OF_ERROR + OF_SHIFT) * shift;
-            if rider.distance.0[lane] > MOST_OFF {
-                plane.forget(lane);
-            }
+            is_kept(plane, rider, lane, loose);
             continue;
         }
         let Some(motion) = skin.motion(triangle, anchor) else {
@@ -109,11 +114,26 @@ fn ride(plane: &mut Plane, rider: &mut Plane, skin: &PosedSkin) {
         let carried = motion.point(anchor);
         rider.anchor.set(lane, carried - anchor);
         rider.distance.0[lane] += OF_ERROR * motion.error + OF_SHIFT * shift;
-        if rider.distance.0[lane] > MOST_OFF {
-            plane.forget(lane);
+        if !is_kept(plane, rider, lane, loose) {
             continue;
         }
         plane.anchor.set(lane, carried);
         plane.normal.set(lane, motion.direction(plane.normal.get(lane)));
     }
+}
+
+/// True for a plane that riding has left where it was, or whose point is far enough that it serves as a bound; else it is
+/// forgotten.
+fn is_kept(plane: &mut Plane, rider: &mut Plane, lane: usize, loose: f32) -> bool {
+    let off = rider.distance.0[lane];
+    if off <= MOST_OFF {
+        return true;
+    }
+    let least = plane.distance.0[lane] - off;
+    if least > loose {
+        (plane.distance.0[lane], rider.distance.0[lane]) = (least, 0.0);
+        return true;
+    }
+    plane.forget(lane);
+    false
 }

@@ -182,8 +182,7 @@ impl Near {
     fn velocity(&mut self, obstacles: &Obstacles, place: Vec3) -> Option<Vec3> {
         if std::mem::replace(&mut self.is_here, true) && obstacles.are_one_moving_skin() {
             // The other side of a gap is another part of the skin.
-            obstacles.at_least_or(place, &mut self.triangle, self.reach);
-            obstacles.velocity_there(place, &mut self.triangle)
+            obstacles.velocity_within(place, &mut self.triangle, self.reach)
         } else {
             obstacles.nearest_velocity(place, &mut self.triangle)
         }

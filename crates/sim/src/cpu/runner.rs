@@ -88,7 +88,8 @@ impl CpuRunner {
         let report = par::awake(|| {
             let obstacles = Obstacles::after(skins, &model.colliders, start, end, time_step);
             skins.clone_from(obstacles.skins());
-            state.contacts.ride(&Solids::new(&obstacles, model.points_per_strand));
+            let solids = Solids::new(&obstacles, model.points_per_strand);
+            state.contacts.ride(&solids, model.settings.collision_margin);
             let mut step = Step { model, state, scratch, obstacles, drive, wind, report };
             for stage in stages(&model.settings) {
                 let watch = Stopwatch::start();

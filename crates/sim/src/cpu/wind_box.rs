@@ -178,62 +178,84 @@ impl WindBox {
         if obstacles.colliders.is_empty() {
             return;
         }
-        let places = |row: usize| {
-            let first = self.axes.world(self.origin + (corner(row * WIDE) + 0.5) * self.edges);
-            Places { first, step: self.axes.0[0] * self.edges.x, count: WIDE }
-        };
+        let step = self.axes.0[0] * self.edges.x;
+        let places = |row: usize| Places { first: self.middle(row * WIDE), step, count: WIDE };
         let rows = (0..contents.len() / WIDE).into_par_iter().with_min_len(8);
         let sides: Vec<Option<Sides>> = rows.map(|row| obstacles.sides_along(places(row))).collect();
-        contents.par_chunks_mut(WIDE).enumerate().with_min_len(8).for_each(|(row, contents)| {
-            let (places, first) = (places(row), places(row).first);
-            if let Some(own) = sides[row] {
-                return self.add_skin(obstacles, &places, (own, deep(&sides, row)), contents);
-            }
-            let (mut near, mut least) = (PosedSkin::UNKNOWN, 0.0);
-            for (column, content) in contents.iter_mut().enumerate() {
-                // A distance changes by no more than the way.
-                least -= self.edges.x;
-                if least > 0.0 {
-                    continue;
+        contents.par_chunks_mut(WIDE * WIDE).enumerate().for_each(|(layer, contents)| {
+            let mut near = PosedSkin::UNKNOWN;
+            for (row, contents) in (layer * WIDE..).zip(contents.chunks_mut(WIDE)) {
+                match sides[row] {
+                    Some(own) => {
+                        let sides = (own, deep(&sides, row));
+                        self.add_skin(obstacles, &places(row), sides, contents, &mut near);
+                    }
+                    None => self.add_row(obstacles, row, contents),
                 }
-                let middle = self.axes.world(self.origin + (corner(row * WIDE + column) + 0.5) * self.edges);
-                least = obstacles.at_least(middle, &mut near);
-                if least <= 0.0 && obstacles.distance(middle, &mut near) < 0.0 {
-                    self.fill(content, obstacles, middle, &mut near);
-                }
-            }
-            // The wind that enters may come from behind a solid.
-            if contents[0].depth >= 0.0
-                && let Some(place) = self.upwind(obstacles, first, &mut near)
-            {
-                self.fill(&mut contents[0], obstacles, place, &mut near);
             }
         });
+    }
+
+    /// Middle of a cell \[m\], world space.
+    fn middle(&self, cell: usize) -> Vec3 {
+        self.axes.world(self.origin + (corner(cell) + 0.5) * self.edges)
+    }
+
+    /// Marks the cells of a row by the distances of their middles.
+    fn add_row(&self, obstacles: &Obstacles, row: usize, contents: &mut [Content]) {
+        let (mut near, mut least) = (PosedSkin::UNKNOWN, 0.0);
+        let first = self.middle(row * WIDE);
+        for (column, content) in contents.iter_mut().enumerate() {
+            // A distance changes by no more than the way.
+            least -= self.edges.x;
+            if least > 0.0 {
+                continue;
+            }
+            let middle = self.middle(row * WIDE + column);
+            least = obstacles.at_least(middle, &mut near);
+            if least <= 0.0 && obstacles.distance(middle, &mut near) < 0.0 {
+                self.fill(content, obstacles, middle, &mut near);
+            }
+        }
+        // The wind that enters may come from behind a solid.
+        if contents[0].depth >= 0.0
+            && let Some(place) = self.upwind(obstacles, first, &mut near)
+        {
+            self.fill(&mut contents[0], obstacles, place, &mut near);
+        }
     }
 
     /// Marks the cells of a row by the sides of their middles of a skin that moves by itself. Its velocity is that of a triangle
     /// about as near as the nearest: the search for that takes long far inside. A triangle beside the cell before it that lies
     /// about as near as a cell is long serves as well. Air outside meets no cell of `deep`, one bit each: these move as the
-    /// triangle of the cell before them.
+    /// triangle of the cell before them. The first cell begins at that of a row beside this one, `beside`.
     fn add_skin(
         &self,
         obstacles: &Obstacles,
         places: &Places,
         (sides, deep): (Sides, u64),
         contents: &mut [Content],
+        beside: &mut u32,
     ) {
-        let mut near = PosedSkin::UNKNOWN;
+        let mut near = *beside;
         let mut fill = |content: &mut Content, place: Vec3, is_deep: bool| {
-            if !is_deep || near == PosedSkin::UNKNOWN {
-                obstacles.at_least_or(place, &mut near, self.edges.min_element());
-            }
-            self.fill(content, obstacles, place, &mut near);
+            let velocity = if !is_deep || near == PosedSkin::UNKNOWN {
+                obstacles.velocity_within(place, &mut near, self.edges.min_element())
+            } else {
+                obstacles.velocity_there(place, &mut near)
+            };
+            self.fill_with(content, velocity);
+            near
         };
+        let mut first = None;
         for (column, content) in contents.iter_mut().enumerate() {
             if sides.inside & (1 << column) != 0 {
-                fill(content, places.first + places.step * column as f32, deep & (1 << column) != 0);
+                let middle = places.first + places.step * column as f32;
+                let near = fill(content, middle, deep & (1 << column) != 0);
+                first.get_or_insert(near);
             }
         }
+        *beside = first.unwrap_or(*beside);
         // The wind that enters may come from behind the skin.
         if contents[0].depth >= 0.0 && sides.behind <= CALM {
             fill(&mut contents[0], places.first - self.axes.0[0] * sides.behind, false);
@@ -242,7 +264,12 @@ impl WindBox {
 
     /// Fills a cell with the solid at a place.
     fn fill(&self, content: &mut Content, obstacles: &Obstacles, place: Vec3, near: &mut u32) {
-        let speed = obstacles.velocity_there(place, near).unwrap_or_default() - self.wind;
+        self.fill_with(content, obstacles.velocity_there(place, near));
+    }
+
+    /// Fills a cell with a solid of a velocity \[m/s\].
+    fn fill_with(&self, content: &mut Content, velocity: Option<Vec3>) {
+        let speed = velocity.unwrap_or_default() - self.wind;
         content.speed = Vec3::from(self.axes.0.map(|axis| axis.dot(speed)));
         content.depth = -1.0;
     }

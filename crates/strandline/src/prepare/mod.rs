@@ -43,6 +43,7 @@ mod axes_tests;
 
 pub(crate) use framing::{bounds, center};
 pub use map::read_map;
+pub(crate) use moving::{STIFF_NECK, open_loop};
 pub use placing::Placement;
 pub use sample::mesh_unit;
 pub use sources::Sources;

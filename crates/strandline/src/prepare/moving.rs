@@ -17,6 +17,10 @@ const LEAST: usize = 8;
 /// Distance \[m\] between the end of a loop and its beginning from which on it is told.
 const OPEN: f32 = 0.01;
 
+/// The note on a neck that a motion would bend, of a body without one.
+pub(crate) const STIFF_NECK: &str =
+    "motion.neck bends the built-in bust alone, without body.file and body.exact: here the neck stays stiff";
+
 /// Metres of a unit of the body's file, and its rotation into head space.
 pub(super) fn placing(scene: &Scene, placing: Placing) -> (f32, Quat) {
     (placing.scale, math::pitch_yaw_roll(scene.body.rotation) * placing.turn)
@@ -66,7 +70,7 @@ pub(super) fn open_loops(skin: &SkinMotion, parts: &[usize]) -> Vec<String> {
 }
 
 /// The note on a motion of a section that ends `gap` \[m\] from where it begins.
-pub(super) fn open_loop(key: &str, gap: f32) -> Option<String> {
+pub(crate) fn open_loop(key: &str, gap: f32) -> Option<String> {
     (gap > OPEN).then(|| {
         format!(
             "{key}.loop: the motion ends {:.1} cm from where it begins, and hair is pulled over the gap in a step: \

@@ -10,6 +10,7 @@ use strandline_base::cache;
 use super::cover::Cover;
 use super::grown::has_form_of_style;
 use super::loading::Loading;
+use super::moving::STIFF_NECK;
 use super::placing::place_mesh;
 use crate::{
     Error,
@@ -42,8 +43,7 @@ pub(super) fn solids(loading: &mut Loading) -> Result<(), Error> {
     let scene = &loading.scene;
     let neck = loading.mesh.as_ref().and_then(|mesh| mesh.neck);
     if scene.motion.neck && neck.is_none() {
-        let note = "motion.neck bends the built-in bust alone, without body.file and body.exact: here the neck stays stiff";
-        loading.notes.push(note.to_owned());
+        loading.notes.push(STIFF_NECK.to_owned());
     }
     if let Some(shape) = loading.shape.clone().filter(|_| is_solid) {
         let parts = match neck {

@@ -53,6 +53,7 @@ use glam::Vec3;
 
 use crate::{
     Error, HeadMotion, Scene,
+    prepare::{STIFF_NECK, open_loop},
     render::{Camera, FrameReport, Look, Picture, PictureSettings, RenderError, memory::check_lights},
     scene::camera_motion::CameraMotion,
     sim::{StepReport, Stiffening},
@@ -274,8 +275,10 @@ impl<E: Executor> Session<E> {
             Change::Picture(settings) => self.set_picture(settings)?,
             Change::Wind(wind) => self.direction.set_wind(wind)?,
             Change::Motion(motion) => {
+                let known = self.motion_notes();
                 self.direction.set_motion(*motion)?;
-                self.events.extend(self.stiff_neck().map(Event::Note));
+                let new = self.motion_notes().into_iter().filter(|note| !known.contains(note));
+                self.events.extend(new.map(Event::Note));
             }
             Change::Drag(ray) => {
                 let hand = &mut self.direction.hand;
@@ -297,13 +300,18 @@ impl<E: Executor> Session<E> {
         Ok(())
     }
 
-    /// A note where a motion would bend the neck of the built-in bust, which was loaded with another.
-    fn stiff_neck(&self) -> Option<String> {
+    /// Notes on the motion: a neck that it would bend and that stays stiff, and a motion that begins again and ends elsewhere than it
+    /// begins.
+    fn motion_notes(&self) -> Vec<String> {
         let body = &self.scene.body;
         let is_bust = self.view.body().is_some() && body.file.is_none() && !body.exact;
-        (is_bust && self.direction.lacks_neck()).then(|| {
-            "the shoulders turn with the head until the scene is loaded again: it was loaded with a neck that stays stiff".to_owned()
-        })
+        let stiff = if is_bust {
+            "the shoulders turn with the head until the scene is loaded again: it was loaded with a neck that stays stiff"
+        } else {
+            STIFF_NECK
+        };
+        let neck = self.direction.lacks_neck().then(|| stiff.to_owned());
+        neck.into_iter().chain(open_loop("motion", self.direction.head.gap_of_loop())).collect()
     }
 
     /// Changes the view without a check: the next picture refuses settings outside their range.

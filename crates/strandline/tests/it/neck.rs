@@ -1,6 +1,9 @@
 //! The neck of the built-in bust, which bends where a scene says so.
 
-use strandline::{Backend, Change, Event, FrameLoop, Pose, Prepared, Scene};
+use strandline::{
+    Backend, Change, Event, FrameLoop, Pose, Prepared, Scene,
+    scene::{MotionName, MotionSection},
+};
 
 /// The demo with few strands and a neck.
 fn few(neck: bool) -> Prepared {
@@ -39,18 +42,51 @@ fn a_body_whose_neck_does_not_bend_is_told() {
     assert_eq!([told(|_| {}), told(exact), told(stiff)], [false, true, false]);
 }
 
+/// The notes of a running loop that is given another motion, twice: they are told once.
+fn told_live(prepared: Prepared, change: impl FnOnce(&mut MotionSection)) -> Vec<String> {
+    let mut motion = prepared.scene.motion.clone();
+    change(&mut motion);
+    let mut hair = FrameLoop::open(prepared, Backend::Cpu).unwrap();
+    for _ in 0..2 {
+        hair.change(Change::Motion(motion.clone().into())).unwrap();
+    }
+    let notes = std::iter::from_fn(|| hair.next_event()).filter_map(|event| match event {
+        Event::Note(note) => Some(note),
+        _ => None,
+    });
+    notes.filter(|note| note.contains("stays stiff") || note.contains("motion.loop")).collect()
+}
+
 #[test]
 fn a_neck_that_stays_stiff_until_the_next_load_is_told() {
-    let told = |loaded: bool, then: bool| {
-        let prepared = few(loaded);
-        let mut motion = prepared.scene.motion.clone();
-        motion.neck = then;
-        let mut hair = FrameLoop::open(prepared, Backend::Cpu).unwrap();
-        hair.change(Change::Motion(motion.into())).unwrap();
-        let notes = std::iter::from_fn(|| hair.next_event());
-        notes
-            .filter(|event| matches!(event, Event::Note(note) if note.contains("a neck that stays stiff")))
-            .count()
-    };
-    assert_eq!([told(false, true), told(true, true), told(true, false)], [1, 0, 0]);
+    let told = |loaded: bool, then: bool| told_live(few(loaded), |motion| motion.neck = then);
+    let stiff = told(false, true);
+    assert!(stiff.len() == 1 && stiff[0].contains("with a neck that stays stiff"), "{stiff:?}");
+    assert!(told(true, true).is_empty() && told(true, false).is_empty());
+    // A body whose neck never bends has the note of the load.
+    let mut scene = few(false).scene;
+    scene.body.exact = true;
+    let never = told_live(Prepared::new(&scene).unwrap(), |motion| motion.neck = true);
+    assert!(
+        never.len() == 1 && never[0].starts_with("motion.neck bends the built-in bust alone"),
+        "{never:?}"
+    );
+}
+
+#[test]
+fn a_loop_that_is_opened_while_hair_moves_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("turn.bvh");
+    let text = "HIERARCHY ROOT Head { OFFSET 0 0 0 CHANNELS 3 Yrotation Xrotation Zrotation } MOTION Frames: 2 Frame Time: \
+                0.5 0 0 0 20 0 0";
+    std::fs::write(&path, text).unwrap();
+    let mut scene = few(false).scene;
+    (scene.motion.name, scene.motion.file) = (MotionName::File, Some(path));
+    let prepared = Prepared::new(&scene).unwrap();
+    let told = told_live(prepared, |motion| motion.r#loop = true);
+    // 20 degrees of a head of 10 cm.
+    assert!(told.len() == 1 && told[0].starts_with("motion.loop: the motion ends 3.5 cm"), "{told:?}");
+    scene.motion.r#loop = true;
+    let known = told_live(Prepared::new(&scene).unwrap(), |motion| motion.rotation.y = 5.0);
+    assert!(known.is_empty(), "the load has told it: {known:?}");
 }
