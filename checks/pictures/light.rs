@@ -202,8 +202,9 @@ law! {
         let drawn = scene.drawn_by(on);
         let found = measures(&drawn.boxed(), &expected, &mask, GAIN);
         let row = highlight_row(&drawn);
-        assert!(found.sound(0.15, 0.1), "{found:?}");
-        assert!(found.regions <= 0.15, "{found:?}");
+        // 0.096 and 1.02 to 1.03 of the light were seen.
+        assert!(found.sound(0.12, 0.05), "{found:?}");
+        assert!(found.regions <= 0.1, "{found:?}");
         assert!(row.abs_diff(105) <= 3, "{row}");
         if !matches!(on, On::Cpu) {
             let apart = measures(&drawn.boxed(), &scene.drawn_by(&On::Cpu).boxed(), &mask, GAIN);
@@ -231,9 +232,9 @@ law! {
         let found = measures(&drawn.boxed(), &expected, &mask, 1.0);
         drawn.save("white_directional", 1.0);
         expected.save("white_directional_expected", 1.0);
-        // 0.95 of the reference, whose noise alone is a FLIP of 0.21.
+        // 0.93 to 0.95 of the reference, whose noise alone is a FLIP of 0.21.
         assert!(found.sound(1.0, 0.07), "{found:?}");
-        // Beside red light traced with less noise 0.117 and 0.934 were seen.
+        // Beside red light traced with less noise 0.111 and 0.922 were seen.
         let traced = measures(&drawn.boxed().grey(), &red("white_traced", 64), &mask, 1.0);
         assert!(traced.sound(0.15, 0.08), "{traced:?}");
         // Few scatterings leave it grey.
@@ -360,18 +361,18 @@ law! {
         let soft = panel([-0.9, 1.25, 1.35], 0.7, [42.0, 39.0, 36.0]);
         let rim = panel([1.1, 1.2, -1.2], 0.4, [70.0, 74.0, 78.0]);
         let Some(found) = on_head(on, "brown_studio", vec![soft, rim], 1024) else { return };
-        assert!(found.sound(0.15, 0.1), "{found:?}");
+        // 0.101 and 0.99 to 1.03 of the light were seen.
+        assert!(found.sound(0.13, 0.05), "{found:?}");
     }
 }
 
 law! {
     long fn a_head_lit_from_behind_is_lit_as_path_tracing_lights_it(on) {
-        // Light from behind comes through the outermost hairs, which texels even out. With four places red was 0.80 of
-        // the reference with 1,024 texels a side, 0.83 with 2,048, 0.88 with 4,096. A GPU's maps together hold 128 MiB:
-        // those of one place may have 2,896 a side, and red was 0.854 there.
-        let (map_size, samples) = if matches!(on, On::Cpu) { (4096, 2) } else { (2896, 1) };
+        // Light from behind comes through the outermost hairs, which texels even out. With 4,096 texels a side 0.109 and 0.99 to
+        // 1.03 of the light were seen. A GPU's maps together hold 128 MiB: those of one place may have 2,896 a side.
+        let (map_size, samples, most) = if matches!(on, On::Cpu) { (4096, 2, 0.05) } else { (2896, 1, 0.15) };
         let light = Light { samples, ..panel([0.35, 0.9, -1.5], 0.5, [150.0, 143.0, 134.0]) };
         let Some(found) = on_head(on, "brown_back", vec![light], map_size) else { return };
-        assert!(found.sound(0.15, 0.15), "{found:?}");
+        assert!(found.sound(0.15, most), "{found:?}");
     }
 }

@@ -21,9 +21,10 @@ pub(super) const TRIANGLES: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Numbers of the box around the hair, and of what each shadow light sees.
 const BOUNDS: usize = BOX + 8 * MAX_SHADOWS;
-/// Cells of a plane and of the grid of the surroundings, at most.
-pub(super) const PLANE: usize = 44 * 44;
-pub(super) const CELLS: usize = 44 * PLANE;
+/// Cells of a line, of a plane and of the grid of the surroundings, at most.
+pub(super) const LONGEST_LINE: usize = 44;
+pub(super) const PLANE: usize = LONGEST_LINE * LONGEST_LINE;
+pub(super) const CELLS: usize = LONGEST_LINE * PLANE;
 
 /// The buffers that depend only on the groom and the body.
 pub(super) struct Groom {

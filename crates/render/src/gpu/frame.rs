@@ -11,7 +11,7 @@ use super::shadow::fit;
 use super::stages::Stages;
 use super::{buffers, codes, draw};
 use crate::frame::{Drawn, Stage, stages};
-use crate::scatter::ways::DIRECTIONS;
+use crate::scatter::ways::{DIRECTIONS, SETS};
 
 /// Kernels, drawings and buffers of a frame.
 pub(super) struct Bounds<'a> {
@@ -126,14 +126,28 @@ fn light_stages(scene: &Scene, rounds: u32, light: &light_grid::Bounds) -> Vec<(
         list.push(light.sum_skin.clone().over(scene.triangle_count));
     }
     list.push(light.prepare.clone().over(CELLS));
-    let [x, y, _] = light.carry.groups(light_grid::LINES);
-    let carry = (light.carry.clone(), [x, y, DIRECTIONS as u32]);
-    for _ in 0..rounds {
-        list.push(carry.clone());
-        list.push((light.scatter.clone(), groups(CELLS, 1)));
+    let lines = |bound: &Bound, count: usize| {
+        let [x, y, _] = bound.groups(light_grid::LINES);
+        (bound.clone(), [x, y, count as u32])
+    };
+    if scene.shadow_count() > 0 {
+        list.push(lines(&light.weigh, scene.shadow_count()));
     }
-    list.push(carry);
-    list.push(light.gather.clone().over(CELLS));
+    // The set that is carried first enters last, since the next one takes its place; the first set is carried last.
+    let rounds = rounds as usize;
+    for set in (rounds + 1..=rounds + SETS).map(|turn| turn % SETS) {
+        list.push(light.sets[set].enter.clone().over(CELLS));
+    }
+    for round in (1..=rounds).rev() {
+        let set = &light.sets[round % SETS];
+        list.push(lines(&set.carry, DIRECTIONS));
+        if round < SETS {
+            list.push(set.gather.clone().over(CELLS));
+        }
+        list.push((set.scatter.clone(), groups(CELLS, 1)));
+    }
+    list.push(lines(&light.sets[0].carry, DIRECTIONS));
+    list.push(light.sets[0].gather.clone().over(CELLS));
     list
 }
 

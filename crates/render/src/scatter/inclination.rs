@@ -1,7 +1,7 @@
 //! Inclination of light that hair has scattered once, finer than the directions along which it is carried.
 //!
-//! The 26 directions lie 35 to 55 degrees apart, a fibre's lobes are 8 to 30 degrees wide: light that crosses upright hair at
-//! 30 degrees would go on at 0, 35 or 45. Hair lit from behind would be dark where it should pass light on, and bright
+//! The 50 directions of a set lie 25 to 31 degrees apart, a fibre's lobes are 8 to 30 degrees wide: light that crosses upright hair
+//! at 15 degrees would go on at 0 or 25. Hair lit from behind would be dark where it should pass light on, and bright
 //! where light should pass it by. So a direction stands for all inclinations around it, and the last lane of its
 //! radiance holds the first moment of the light in it: how much its mean sine of inclination lies beside the
 //! direction's own, times the sum of its channels. It is carried as light is, and tells the next hair where light
@@ -14,8 +14,8 @@ use super::ways::{DIRECTIONS, Rays};
 use crate::fibre::chiang::Lobes;
 
 /// Variance \[rad^2\] of the inclinations that a direction stands for: those of a hat function between nearest
-/// neighbours, which lie 35.26 degrees apart.
-pub(super) const REGION: f64 = 0.063;
+/// neighbours, which lie 25.24 degrees apart.
+pub(super) const REGION: f64 = 0.0323;
 /// Kinds of paths: R, TT, TRT.
 pub(crate) const PATHS: usize = 3;
 

@@ -6,20 +6,18 @@
 //! Hair that is not all alike scatters as a mixture of its darkest and its lightest does: what many hairs show is the
 //! mean of what each shows, never what hair of their mean pigment would.
 
+use std::sync::OnceLock;
+
 use glam::{Vec3, Vec4};
 use strandline_base::par::prelude::*;
 
 use super::inclination::{Inclination, REGION, offsets};
-use super::ways::{DIRECTIONS, Rays, TANGENTS, directions, tangent};
+use super::ways::{DIRECTIONS, Rays, SETS, Set, TANGENTS, directions, tangent};
 use crate::fibre::chiang::{Lobes, MOMENTS, Met, Pigments, Seen, Table, terms_along};
 use crate::light_field;
 
 /// Least by which albedos of two kinds of hair differ, for a third to lie between them.
 const LEAST_APART: f32 = 1e-6;
-/// Variance of the inclination \[rad^2\] by which lobes are widened: directions stand for all around them. Among the
-/// directions, that which a ray has is the only one at just its inclination, and lobes as narrow as a fibre's would let
-/// light keep it for too long.
-const SPREAD: f64 = 0.02;
 
 /// Most kinds of hair that are mixed.
 pub const MOST_ENDS: usize = 2;
@@ -38,20 +36,24 @@ pub struct Lattice {
     /// Terms along the fibre of straight light: parts of a lobe around the directions.
     straight: Vec<Vec4>,
     inclination: Inclination,
-    /// Unit directions in which light goes, and their shares of the sphere.
-    ways: [(Vec3, f32); DIRECTIONS],
+    /// The sets of directions in which light goes.
+    sets: [Set; SETS],
     tangents: Vec<Vec3>,
     /// The darkest hair; the lightest, where there is another.
     ends: Vec<End>,
 }
+
+/// Radiance along each direction of a set of light along each one of another, shape `[arriving][shown]`.
+type Shown = [Rays; DIRECTIONS];
 
 /// Scattering of one kind of hair.
 #[derive(Clone, Debug)]
 struct End {
     /// Its view at some inclination.
     seen: Seen,
-    /// Radiance that it sends along a direction, of light along another: shape `[tangent][shown][arriving]`.
-    shown: Vec<[Rays; DIRECTIONS]>,
+    /// Radiance that it sends along a direction of the next set, of light along one of a set: shape
+    /// `[set][tangent][arriving][shown]`. Found when a cell asks for it: hair lies along few of the tangents.
+    shown: [Vec<OnceLock<Box<Shown>>>; SETS],
     /// Share of even light that it gives back, as a mean over its directions.
     albedo: Vec4,
 }
@@ -60,12 +62,12 @@ impl Lattice {
     /// The scattering of hair with the darkest's absorption per fibre radius, and of the lightest, whose pigment is a
     /// share of that; none where all hair is the same.
     pub fn new(lobes: &Lobes, absorption: [f64; 3], lightest: Option<Pigments>) -> Self {
-        let table = Table::new(&lobes.spread(SPREAD), absorption);
+        let table = Table::new(lobes, absorption);
         let straight = terms_along(&lobes.spread(REGION), table.floor);
         let inclination = Inclination::new(lobes);
-        let ways = directions().map(|(step, share)| (step.as_vec3().normalize(), share));
+        let sets = std::array::from_fn(directions);
         let tangents: Vec<Vec3> = (0..TANGENTS).map(tangent).collect();
-        let mut lattice = Self { table, straight, inclination, ways, tangents, ends: Vec::new() };
+        let mut lattice = Self { table, straight, inclination, sets, tangents, ends: Vec::new() };
         let kinds = [Some(Pigments::Even(1.0)), lightest];
         lattice.ends = kinds.into_iter().flatten().map(|pigments| lattice.end(pigments)).collect();
         lattice
@@ -74,8 +76,23 @@ impl Lattice {
     fn end(&self, pigments: Pigments) -> End {
         let seen = Seen::new(MEAN_SINE, pigments);
         let albedo = self.table.seen_moments(&seen)[0];
-        let shown = |&t: &Vec3| self.ways.map(|(way, _)| self.weights_of(&seen, t, way, &[0.0; DIRECTIONS]));
-        End { seen, shown: self.tangents.par_iter().map(shown).collect(), albedo }
+        let shown = std::array::from_fn(|_| vec![OnceLock::new(); TANGENTS]);
+        End { seen, shown, albedo }
+    }
+
+    /// Radiance that a kind of hair with a known tangent sends along the set behind one.
+    fn shown_by<'a>(&self, end: &'a End, set: usize, tangent: usize) -> &'a Shown {
+        end.shown[set][tangent].get_or_init(|| {
+            let t = self.tangents[tangent];
+            let arriving = self.arriving(t, set);
+            let next = &self.sets[(set + 1) % SETS];
+            let mut found = Box::new([[Vec4::ZERO; DIRECTIONS]; DIRECTIONS]);
+            for (to, (way, _)) in next.iter().enumerate() {
+                let weights = self.weights_of(&end.seen, t, *way, &arriving, &[0.0; DIRECTIONS]);
+                found.iter_mut().zip(weights).for_each(|(shown, weight)| shown[to] = weight);
+            }
+            found
+        })
     }
 
     /// True if hair is not all alike.
@@ -106,17 +123,26 @@ impl Lattice {
     }
 
     /// The entries of the tables; known directions of hair; terms along the fibre of straight light; what hair shows, shape
-    /// `[end][tangent][shown][arriving]`.
+    /// `[end][set][tangent][arriving][shown]`.
     pub fn entries(&self) -> Vec<Vec4> {
         let tangents = self.tangents.iter().map(|tangent| tangent.extend(0.0));
-        let shown = self.ends.iter().flat_map(|end| end.shown.iter().flatten().flatten().copied());
+        let all = || (0..SETS).flat_map(|set| (0..TANGENTS).map(move |tangent| (set, tangent)));
+        let shown: Vec<&Shown> = self
+            .ends
+            .iter()
+            .flat_map(|end| {
+                let one = |(set, tangent)| self.shown_by(end, set, tangent);
+                all().collect::<Vec<_>>().into_par_iter().map(one).collect::<Vec<_>>()
+            })
+            .collect();
+        let shown = shown.into_iter().flatten().flatten().copied();
         let straight = self.straight.iter().copied();
         self.table.entries.iter().copied().chain(tangents).chain(straight).chain(shown).collect()
     }
 
-    /// The directions and their shares of the sphere.
-    pub fn ways(&self) -> &[(Vec3, f32); DIRECTIONS] {
-        &self.ways
+    /// The directions of a set and their shares of the sphere.
+    pub fn ways(&self, set: usize) -> &Set {
+        &self.sets[set]
     }
 
     /// The nearest known direction of hair to a unit tangent; behind these their opposites have numbers.
@@ -128,48 +154,62 @@ impl Lattice {
         if dot < 0.0 { number + TANGENTS } else { number }
     }
 
-    /// Radiance toward `to_eye` of each kind of hair of unit tangent `t` in light along each direction, whose
+    /// Radiance toward `to_eye` of each kind of hair of unit tangent `t` in light along each direction of a set, whose
     /// inclinations are those of `rays`, and its moments.
     pub fn weights(
         &self,
         t: Vec3,
         to_eye: Vec3,
+        set: usize,
         rays: &Rays,
     ) -> impl Iterator<Item = (Rays, [Vec4; MOMENTS])> {
-        let offsets = offsets(rays);
+        let (offsets, arriving) = (offsets(rays), self.arriving(t, set));
         let of = move |end: &End| {
             let moments = self.table.seen_moments(&end.seen.at(t.dot(to_eye)));
-            (self.weights_of(&end.seen, t, to_eye, &offsets), moments)
+            (self.weights_of(&end.seen, t, to_eye, &arriving, &offsets), moments)
         };
         self.ends.iter().map(of)
     }
 
+    /// Light along every direction of a set, with the directions' shares of the sphere.
+    fn arriving(&self, t: Vec3, set: usize) -> [(Arriving, f32); DIRECTIONS] {
+        self.sets[set].map(|(way, share)| (Arriving::new(t, -way), share))
+    }
+
     /// Sines of the inclinations of light along each direction lie so much beside the direction's own.
-    fn weights_of(&self, seen: &Seen, t: Vec3, to_eye: Vec3, offsets: &[f32; DIRECTIONS]) -> Rays {
+    fn weights_of(
+        &self,
+        seen: &Seen,
+        t: Vec3,
+        to_eye: Vec3,
+        arriving: &[(Arriving, f32); DIRECTIONS],
+        offsets: &[f32; DIRECTIONS],
+    ) -> Rays {
         let u = light_field::across(t, to_eye);
         let seen = seen.at(t.dot(to_eye));
         let along = |arriving: &Arriving, share: f32| {
             let solid = 4.0 * std::f32::consts::PI * share;
             paths_of(&self.table, &self.table.entries, u, &seen, arriving).map(|path| path * solid)
         };
-        let mut paths = self.ways.map(|(way, share)| along(&Arriving::new(t, -way), share));
-        let shares = self.table.shares(&seen);
+        let mut paths = [[Vec3::ZERO; 3]; DIRECTIONS];
         let mut sums = [Vec3::ZERO; 3];
-        for path in &paths {
-            sums.iter_mut().zip(path).for_each(|(sum, path)| *sum += *path);
+        for (path, (arriving, share)) in paths.iter_mut().zip(arriving) {
+            *path = along(arriving, *share);
+            (0..3).for_each(|kind| sums[kind] += path[kind]);
         }
+        let shares = self.table.shares(&seen);
         let scales: [Vec3; 3] = std::array::from_fn(|path| shares[path] / sums[path].max(Vec3::splat(1e-20)));
-        for ((path, offset), (way, share)) in paths.iter_mut().zip(offsets).zip(&self.ways) {
+        for ((path, offset), (arriving, share)) in paths.iter_mut().zip(offsets).zip(arriving) {
             if *offset != 0.0 {
-                *path = along(&Arriving::new(t, -*way).beside(-offset), *share);
+                *path = along(&arriving.beside(-offset), *share);
             }
         }
         paths.map(|[r, tt, trt]| (r * scales[0] + tt * scales[1] + trt * scales[2]).extend(0.0))
     }
 
-    /// Views of hair of unit tangent `t` along every direction.
-    pub fn shows(&self, t: Vec3) -> [Shows; DIRECTIONS] {
-        self.ways.map(|(way, share)| {
+    /// Views of hair of unit tangent `t` along every direction of a set.
+    pub fn shows(&self, t: Vec3, set: usize) -> [Shows; DIRECTIONS] {
+        self.sets[set].map(|(way, share)| {
             let seen = self.ends[0].seen.at(t.dot(way));
             Shows { u: light_field::across(t, way), seen, weight: 4.0 * std::f32::consts::PI * share }
         })
@@ -232,10 +272,18 @@ impl Lattice {
         self.table.shares(&self.ends[0].seen.at(sine))
     }
 
-    /// Adds what a mixture of hair near tangent number `tangent` (see [`nearest`](Self::nearest)) shows of light along
-    /// every direction; a share `order` of the hair has that tangent, the rest lies every way and shows the same all around.
-    pub fn add_shown(&self, tangent: usize, order: f32, mix: &Mix, light: &Rays, shown: &mut Rays) {
-        let mean: Vec4 = light.iter().zip(&self.ways).map(|(light, (_, share))| *light * *share).sum();
+    /// Adds what a mixture of hair near tangent number `tangent` (see [`nearest`](Self::nearest)) shows along every direction
+    /// of the set behind `set`, of light along those of `set`; a share `order` of the hair has that tangent, the rest lies
+    /// every way and shows the same all around.
+    pub fn add_shown(
+        &self,
+        set: usize,
+        tangent: usize,
+        (order, mix): (f32, &Mix),
+        light: &Rays,
+        shown: &mut Rays,
+    ) {
+        let mean: Vec4 = light.iter().zip(&self.sets[set]).map(|(light, (_, share))| *light * *share).sum();
         let unordered = self.albedo(mix) * mean * (1.0 - order);
         shown.iter_mut().for_each(|shown| *shown += unordered);
         // Opposite hair shows along the opposite direction the same of opposite light.
@@ -246,10 +294,11 @@ impl Lattice {
         }
         for (end, share) in self.ends.iter().zip(mix).filter(|(_, share)| **share != Vec4::ZERO) {
             let ordered_share = *share * order;
-            for (way, weights) in end.shown[tangent].iter().enumerate() {
-                let ordered: Vec4 = weights.iter().zip(&light).map(|(weight, light)| *weight * *light).sum();
-                shown[if is_opposite { DIRECTIONS - 1 - way } else { way }] += ordered * ordered_share;
+            let mut ordered = product(self.shown_by(end, set, tangent), &light);
+            if is_opposite {
+                ordered.reverse();
             }
+            shown.iter_mut().zip(ordered).for_each(|(shown, ordered)| *shown += ordered * ordered_share);
         }
     }
 
@@ -267,6 +316,24 @@ impl Lattice {
     pub fn albedos(&self) -> impl Iterator<Item = Vec4> {
         self.ends.iter().map(|end| end.albedo)
     }
+}
+
+/// Sum over the arriving directions of weights times light.
+fn product(weights: &Shown, light: &Rays) -> Rays {
+    /// As many sums as a processor holds at once.
+    const AT_ONCE: usize = 10;
+    let mut found = [Vec4::ZERO; DIRECTIONS];
+    for first in (0..DIRECTIONS).step_by(AT_ONCE) {
+        let mut sums = [Vec4::ZERO; AT_ONCE];
+        for arriving in 0..DIRECTIONS {
+            let (weights, light) = (&weights[arriving][first..first + AT_ONCE], light[arriving]);
+            for at in 0..AT_ONCE {
+                sums[at] += weights[at] * light;
+            }
+        }
+        found[first..first + AT_ONCE].copy_from_slice(&sums);
+    }
+    found
 }
 
 /// Radiance of each kind of path toward the eye, in whose direction `u` is a unit vector across the hair.
@@ -287,6 +354,7 @@ pub struct Shows {
 }
 
 /// Light that meets hair from one direction.
+#[derive(Clone, Copy)]
 struct Arriving {
     to_light: Vec3,
     sine: f32,
@@ -304,8 +372,8 @@ impl Arriving {
 
     /// The same turn at an inclination whose sine is greater by an offset.
     #[inline]
-    fn beside(self, offset: f32) -> Self {
-        Self { met: Met::new((self.sine + offset).clamp(-1.0, 1.0)), ..self }
+    fn beside(&self, offset: f32) -> Self {
+        Self { met: Met::new((self.sine + offset).clamp(-1.0, 1.0)), ..*self }
     }
 }
 

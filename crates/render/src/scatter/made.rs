@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use glam::Vec3;
 use strandline_base::math;
 
 use super::lattice::Lattice;
@@ -27,7 +28,9 @@ impl Made {
         let darkest = from.darkest.to_array();
         let absorption = std::array::from_fn(|channel| unit[channel] * f64::from(darkest[channel]));
         let lattice = Arc::new(Lattice::new(&lobes, absorption, from.lightest_of_darkest()));
-        Self { from, table: Table::new(&lobes, unit), lattice }
+        let alike = from.darkest == Vec3::ONE;
+        let table = if alike { lattice.table().clone() } else { Table::new(&lobes, unit) };
+        Self { from, table, lattice }
     }
 
     /// Number of scatterings after which next to nothing is left to scatter, and no more than the look allows.

@@ -7,11 +7,11 @@ use super::light_scene::{Cell, Scene};
 use super::occlusion::GridBox;
 use crate::fast_math::exp;
 use crate::light_field::{self, Field};
-use crate::scatter::ways::directions;
-use crate::scatter::ways::{DIRECTIONS, Rays};
+use crate::scatter::lattice::Lattice;
+use crate::scatter::ways::{DIRECTIONS, Lines, Rays, SETS};
 
 /// Mean cosine between random hairs and the plane across a direction.
-const MEAN_COSINE: f32 = std::f32::consts::FRAC_PI_4;
+pub(super) const MEAN_COSINE: f32 = std::f32::consts::FRAC_PI_4;
 /// Attenuation of light by skin, relative to cells that are evenly filled with it.
 const SKIN_EXTINCTION: f32 = 4.0;
 /// Optical depth of hair below which the rounding of an exponential would show in the mean radiance of a cell.
@@ -20,6 +20,8 @@ const THIN: f32 = 1e-2;
 const BLOCK: usize = 64;
 /// No slot.
 const NONE: u32 = u32::MAX;
+/// Directions of which no two are opposite.
+const HALF: usize = DIRECTIONS / 2;
 
 /// Light of [`BLOCK`] slots, shape `[direction][slot]`.
 type Block = [[Vec4; BLOCK]; DIRECTIONS];
@@ -27,17 +29,25 @@ type Block = [[Vec4; BLOCK]; DIRECTIONS];
 /// Light carried through cells. Those that hold something have a slot.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Carried {
+    counts: IVec3,
     /// The slot of each cell.
     slots: Vec<u32>,
-    /// True for each row of cells that is not empty, shape `[layer][row]`.
-    holds: Vec<bool>,
-    /// Radiance of each slot's hair (between `scatter` and `carry`) or mean radiance within it (after
-    /// `carry`).
+    /// The slots in order along each axis.
+    orders: [Vec<u32>; 3],
+    /// Radiance of the skin of each slot.
+    skins: Vec<Vec4>,
+    sets: [Rayed; SETS],
+}
+
+/// Light along the directions of a set.
+#[derive(Clone, Debug, Default)]
+struct Rayed {
+    /// Radiance of each slot's hair (between `scatter` and `carry`) or mean radiance within it (after `carry`).
     rays: Vec<Block>,
     /// Its share of direct light.
     direct: Vec<Block>,
-    /// Radiance of the skin of each slot.
-    skins: Vec<Vec4>,
+    /// Effect of each slot on light along the first half of the directions.
+    crossings: Vec<Vec<Crossing>>,
     ways: Vec<Way>,
 }
 
@@ -46,18 +56,16 @@ pub(crate) struct Carried {
 struct Way {
     /// Unit direction in which light goes.
     direction: Vec3,
-    /// From cell to cell, and its length over that of a cell.
-    step: IVec3,
-    length: f32,
-    /// Effect of each slot on light.
-    crossings: Vec<Crossing>,
-    /// Radiance that leaves each cell: of all of them behind the last `carry`, of two layers else.
+    lines: Lines,
+    /// The slot before each one along its line; none where there is nothing before.
+    before: Vec<u32>,
+    /// Radiance that leaves each slot.
     leaving: Vec<Vec4>,
 }
 
 /// Effect of a cell on light along a direction.
 #[derive(Clone, Copy, Debug, Default)]
-struct Crossing {
+pub(super) struct Crossing {
     /// Shares that skin before and behind the hair lets through.
     before: f32,
     behind: f32,
@@ -67,99 +75,117 @@ struct Crossing {
 }
 
 impl Carried {
-    /// Lays slots for cells; what they show at first of straight light, of even light, and of skin.
-    pub(crate) fn begin(
-        &mut self,
-        grid: &GridBox,
-        cells: &[Cell],
-        even: impl Fn(&Cell) -> Vec4 + Sync + Send,
-        straight: impl Fn(&Cell) -> Rays + Sync + Send,
-        skin: impl Fn(&Cell) -> Vec4 + Sync + Send,
-    ) {
+    /// Lays slots for cells, which come in the order of their indices.
+    pub(crate) fn lay(&mut self, grid: &GridBox, cells: &[Cell]) {
+        let counts = grid.counts;
+        self.counts = IVec3::from_array(counts.map(|count| count as i32));
         self.slots.clear();
         self.slots.resize(grid.cell_count(), NONE);
         cells.iter().enumerate().for_each(|(slot, cell)| self.slots[cell.index] = slot as u32);
-        self.holds.clear();
-        self.holds.extend(self.slots.chunks(grid.counts[0]).map(|row| row.iter().any(|slot| *slot != NONE)));
+        let strides = [1, counts[0], counts[0] * counts[1]];
+        for (axis, order) in self.orders.iter_mut().enumerate() {
+            order.clear();
+            order.extend(0..cells.len() as u32);
+            order.sort_by_key(|slot| cells[*slot as usize].index / strides[axis] % counts[axis]);
+        }
+    }
+
+    /// Sets what cells with slots show at first: straight light along each set, even light, and skin.
+    pub(crate) fn begin(
+        &mut self,
+        cells: &[Cell],
+        lattice: &Lattice,
+        even: impl Fn(&Cell) -> Vec4 + Sync + Send,
+        straight: impl Fn(&Cell) -> [Rays; SETS] + Sync + Send,
+        skin: impl Fn(&Cell) -> Vec4 + Sync + Send,
+    ) {
         let blocks = cells.len().div_ceil(BLOCK);
         let empty = || [[Vec4::ZERO; BLOCK]; DIRECTIONS];
-        self.rays.resize_with(blocks, empty);
-        self.direct.resize_with(blocks, empty);
-        let both = self.rays.par_iter_mut().zip(&mut self.direct).zip(cells.par_chunks(BLOCK));
-        both.for_each(|((rays, direct), cells)| {
+        for set in &mut self.sets {
+            set.rays.resize_with(blocks, empty);
+            set.direct.resize_with(blocks, empty);
+        }
+        let [one, other] = &mut self.sets;
+        let rays = one.rays.par_iter_mut().zip(&mut other.rays);
+        let direct = one.direct.par_iter_mut().zip(&mut other.direct);
+        rays.zip(direct).zip(cells.par_chunks(BLOCK)).for_each(|((rays, direct), cells)| {
+            let (rays, direct) = ([rays.0, rays.1], [direct.0, direct.1]);
             for (at, cell) in cells.iter().enumerate() {
                 let even = even(cell);
-                for (way, shown) in straight(cell).into_iter().enumerate() {
-                    (direct[way][at], rays[way][at]) = (shown, shown + even);
+                for (set, straight) in straight(cell).into_iter().enumerate() {
+                    for (way, shown) in straight.into_iter().enumerate() {
+                        (direct[set][way][at], rays[set][way][at]) = (shown, shown + even);
+                    }
                 }
             }
         });
         self.skins.clear();
         self.skins.par_extend(cells.par_iter().map(skin));
-        self.ways.resize_with(DIRECTIONS, Way::default);
-        self.ways.par_iter_mut().zip(directions()).for_each(|(way, (step, _))| {
-            (way.step, way.length) = (step, step.as_vec3().length());
-            way.direction = step.as_vec3() / way.length;
-            way.leaving.resize(grid.cell_count(), Vec4::ZERO);
-            let (direction, length) = (way.direction, way.length);
-            way.crossings.clear();
-            way.crossings.extend(cells.iter().map(|cell| Crossing::new(cell, direction, length)));
+        for set in 0..SETS {
+            self.lay_ways(set, cells, lattice);
+        }
+    }
+
+    /// Lays the lines of cells along every direction of a set.
+    fn lay_ways(&mut self, set: usize, cells: &[Cell], lattice: &Lattice) {
+        let (slots, counts) = (&self.slots, self.counts);
+        let Rayed { crossings, ways, .. } = &mut self.sets[set];
+        ways.resize_with(DIRECTIONS, Way::default);
+        ways.par_iter_mut().zip(lattice.ways(set)).for_each(|(way, (direction, _))| {
+            (way.direction, way.lines) = (*direction, Lines::new(*direction));
+            way.leaving.resize(cells.len(), Vec4::ZERO);
+            way.before.clear();
+            way.before.extend(cells.iter().map(|cell| before(slots, counts, &way.lines, cell.index)));
+        });
+        crossings.resize_with(HALF, Vec::new);
+        crossings.par_iter_mut().zip(ways).for_each(|(crossings, way)| {
+            crossings.clear();
+            let of = |cell: &Cell| Crossing::new(cell, way.direction, way.lines.length);
+            crossings.extend(cells.iter().map(of));
         });
     }
 
-    /// Carries light along every direction through what the cells hold; what leaves each cell stays known of the `last`
-    /// time. Else two layers are enough, which stay close to a processor.
-    pub(crate) fn carry(&mut self, grid: &GridBox, around: &Field, last: bool) {
-        let Self { slots, holds, rays, skins, ways, .. } = self;
+    /// Carries light along every direction of a set through what the cells hold.
+    pub(crate) fn carry(&mut self, set: usize, around: &Field) {
+        let Self { orders, skins, sets, .. } = self;
+        let Rayed { rays, crossings, ways, .. } = &mut sets[set];
         let mut parts: Vec<Vec<&mut [Vec4; BLOCK]>> = (0..DIRECTIONS).map(|_| Vec::new()).collect();
         for block in rays {
             parts.iter_mut().zip(block).for_each(|(part, rays)| part.push(rays));
         }
-        parts.into_par_iter().zip(ways).for_each(|(mut rays, way)| {
+        parts.into_par_iter().zip(ways).enumerate().for_each(|(number, (mut rays, way))| {
             let outside = light_field::radiance(around, -way.direction);
-            let (step, [columns, rows, layers]) = (way.step, grid.counts.map(|count| count as i32));
-            let turned = |at: i32, count: i32, step: i32| if step < 0 { count - 1 - at } else { at };
-            let inside = |at: i32, count: i32| (0..count).contains(&at);
-            for z in (0..layers).map(|z| turned(z, layers, step.z)) {
-                for y in (0..rows).map(|y| turned(y, rows, step.y)) {
-                    let known = inside(z - step.z, layers) && inside(y - step.y, rows);
-                    let first = |z: i32, y: i32| ((z * rows + y) * columns) as usize;
-                    let layer = |z: i32| if last { z } else { z & 1 };
-                    let row = Row {
-                        first: first(layer(z), y),
-                        columns: columns as usize,
-                        from: known.then(|| first(layer(z - step.z), y - step.y)),
-                        outside,
-                    };
-                    let cells = first(z, y);
-                    if holds[cells / row.columns] {
-                        let held = &slots[cells..][..row.columns];
-                        way.cross(&row, held, |slot, crossing, arrived| {
-                            crossing.cross(&mut rays[slot / BLOCK][slot % BLOCK], skins[slot], arrived)
-                        });
-                    } else {
-                        way.pass(&row);
-                    }
-                }
+            let opposite = number >= HALF;
+            let crossings = &crossings[if opposite { DIRECTIONS - 1 - number } else { number }];
+            let Way { lines, before, leaving, .. } = way;
+            let order = &orders[lines.axis];
+            for number in 0..order.len() {
+                let number = if lines.is_backward() { order.len() - 1 - number } else { number };
+                let slot = order[number] as usize;
+                let arrived = leaving.get(before[slot] as usize).copied().unwrap_or(outside);
+                let ray = &mut rays[slot / BLOCK][slot % BLOCK];
+                leaving[slot] = crossings[slot].turned(opposite).cross(ray, skins[slot], arrived);
             }
         });
     }
 
-    /// Scatters the carried light by hair and skin.
-    pub(crate) fn scatter(&mut self, cells: &[Cell], scene: &Scene) {
-        let Self { rays, direct, skins, .. } = self;
-        let both =
-            rays.par_iter_mut().zip(direct).zip(cells.par_chunks(BLOCK)).zip(skins.par_chunks_mut(BLOCK));
-        both.for_each(|(((rays, direct), cells), skins)| {
+    /// Scatters the light that was carried along a set by hair, toward the next set, and skin.
+    pub(crate) fn scatter(&mut self, set: usize, cells: &[Cell], scene: &Scene) {
+        let [one, other] = &mut self.sets;
+        let (from, to) = if set == 0 { (one, other) } else { (other, one) };
+        let both = from.rays.par_iter().zip(&mut to.rays).zip(&to.direct);
+        let cells = cells.par_chunks(BLOCK).zip(self.skins.par_chunks_mut(BLOCK));
+        both.zip(cells).for_each(|(((from, to), direct), (cells, skins))| {
             for (at, (cell, skin)) in cells.iter().zip(skins).enumerate() {
-                let carried: Rays = std::array::from_fn(|way| rays[way][at]);
+                let carried: Rays = std::array::from_fn(|way| from[way][at]);
                 if cell.hair > 0.0 {
                     let mut shown: Rays = std::array::from_fn(|way| direct[way][at]);
-                    scene.lattice.add_shown(cell.nearest, cell.order, &cell.mix, &carried, &mut shown);
-                    rays.iter_mut().zip(shown).for_each(|(rays, shown)| rays[at] = shown);
+                    let kind = (cell.order, &cell.mix);
+                    scene.lattice.add_shown(set, cell.nearest, kind, &carried, &mut shown);
+                    to.iter_mut().zip(shown).for_each(|(rays, shown)| rays[at] = shown);
                 }
                 if cell.skin != Vec3::ZERO {
-                    *skin = (cell.skin_light + on_skin(cell.skin, &carried, scene)) * cell.skin_color;
+                    *skin = (cell.skin_light + on_skin(cell.skin, &carried, set, scene)) * cell.skin_color;
                 }
             }
         });
@@ -171,95 +197,70 @@ impl Carried {
         (slot != NONE).then_some(slot as usize)
     }
 
-    /// Light along every direction in a cell.
-    pub(crate) fn rays(&self, index: usize) -> Rays {
+    /// Share of light that hair and skin let through on average to the hair of each slot, if it comes along a direction.
+    pub(super) fn reached(&self, cells: &[Cell], direction: Vec3) -> Vec<f32> {
+        let lines = Lines::new(direction);
+        let (mut leaving, mut found) = (vec![0.0; cells.len()], vec![0.0; cells.len()]);
+        let mut cross = |slot: &u32| {
+            let cell = &cells[*slot as usize];
+            let before = before(&self.slots, self.counts, &lines, cell.index);
+            let arrived = leaving.get(before as usize).copied().unwrap_or(1.0);
+            let Crossing { before, behind, passed, mean } = Crossing::new(cell, direction, lines.length);
+            found[*slot as usize] = arrived * before * mean;
+            leaving[*slot as usize] = arrived * before * passed * behind;
+        };
+        let order = self.orders[lines.axis].iter();
+        if lines.is_backward() {
+            order.rev().for_each(cross)
+        } else {
+            order.for_each(&mut cross)
+        }
+        found
+    }
+
+    /// Light along every direction of a set in a cell, of the last time that it was carried along these.
+    pub(crate) fn rays(&self, set: usize, index: usize, around: &Field) -> Rays {
+        let Rayed { rays, ways, .. } = &self.sets[set];
         match self.slot(index) {
-            Some(slot) => std::array::from_fn(|way| self.rays[slot / BLOCK][way][slot % BLOCK]),
-            None => std::array::from_fn(|way| self.ways[way].leaving[index]),
+            Some(slot) => std::array::from_fn(|way| rays[slot / BLOCK][way][slot % BLOCK]),
+            None => std::array::from_fn(|way| {
+                let way = &ways[way];
+                let before = before(&self.slots, self.counts, &way.lines, index) as usize;
+                let outside = || light_field::radiance(around, -way.direction);
+                way.leaving.get(before).copied().unwrap_or_else(outside)
+            }),
         }
     }
 }
 
-/// Light along every direction that meets skin, of an area times its normal, as radiance of a white surface.
-fn on_skin(skin: Vec3, rays: &Rays, scene: &Scene) -> Vec4 {
+/// The slot that light along lines meets last before it comes to a cell.
+fn before(slots: &[u32], counts: IVec3, lines: &Lines, index: usize) -> u32 {
+    let index = index as i32;
+    let mut at = IVec3::new(index % counts.x, index / counts.x % counts.y, index / counts.x / counts.y);
+    let first = lines.plane(at[lines.axis], counts[lines.axis]);
+    for number in (1..=first).rev() {
+        at -= lines.step(number);
+        if at.cmplt(IVec3::ZERO).any() || at.cmpge(counts).any() {
+            break;
+        }
+        let slot = slots[((at.z * counts.y + at.y) * counts.x + at.x) as usize];
+        if slot != NONE {
+            return slot;
+        }
+    }
+    NONE
+}
+
+/// Light along every direction of a set that meets skin, of an area times its normal, as radiance of a white surface.
+fn on_skin(skin: Vec3, rays: &Rays, set: usize, scene: &Scene) -> Vec4 {
     let normal = skin.normalize_or_zero();
     let (mut met, mut whole) = (Vec4::ZERO, 1e-12);
-    for (light, (way, share)) in rays.iter().zip(scene.lattice.ways()) {
+    for (light, (way, share)) in rays.iter().zip(scene.lattice.ways(set)) {
         let weight = share * (-normal.dot(*way)).max(0.0);
         met += *light * weight;
         whole += weight;
     }
     met / whole
-}
-
-/// A row of cells along x.
-struct Row {
-    /// Index of the light that leaves its first cell, and the number of its cells.
-    first: usize,
-    columns: usize,
-    /// The same of the row that light comes from, which may be this one; none where that is outside the grid.
-    from: Option<usize>,
-    /// Light from outside.
-    outside: Vec4,
-}
-
-impl Way {
-    /// Carries light through a row that holds something: in a slot `leaves` says what does of what arrives.
-    #[inline]
-    fn cross(&mut self, row: &Row, held: &[u32], mut leaves: impl FnMut(usize, &Crossing, Vec4) -> Vec4) {
-        let (aside, crossings) = (self.step.x, &self.crossings);
-        let mut leaves = |slot: u32, arrived: Vec4| match slot {
-            NONE => arrived,
-            slot => leaves(slot as usize, &crossings[slot as usize], arrived),
-        };
-        if row.from == Some(row.first) {
-            let mut arrived = row.outside;
-            for at in 0..row.columns {
-                let column = if aside < 0 { row.columns - 1 - at } else { at };
-                arrived = leaves(held[column], arrived);
-                self.leaving[row.first + column] = arrived;
-            }
-            return;
-        }
-        let (from, to) = two_rows(&mut self.leaving, row);
-        for (column, (to, slot)) in to.iter_mut().zip(held).enumerate() {
-            // Before the first there is none, as there is none behind the last.
-            let arrived = from.get(column.wrapping_sub(aside as usize));
-            *to = leaves(*slot, arrived.copied().unwrap_or(row.outside));
-        }
-    }
-
-    /// Carries light through a row that holds nothing.
-    fn pass(&mut self, row: &Row) {
-        let aside = self.step.x;
-        let (from, to) = two_rows(&mut self.leaving, row);
-        if from.is_empty() {
-            return to.fill(row.outside);
-        }
-        let count = row.columns - aside.unsigned_abs() as usize;
-        let [from_first, to_first] = [(-aside).max(0), aside.max(0)].map(|first| first as usize);
-        to[to_first..][..count].copy_from_slice(&from[from_first..][..count]);
-        match aside {
-            1 => to[0] = row.outside,
-            -1 => to[row.columns - 1] = row.outside,
-            _ => {}
-        }
-    }
-}
-
-/// The row that light comes from, empty where that is the same one or outside the grid, and the row itself.
-fn two_rows<'a>(leaving: &'a mut [Vec4], row: &Row) -> (&'a [Vec4], &'a mut [Vec4]) {
-    match row.from {
-        Some(from) if from < row.first => {
-            let (low, high) = leaving.split_at_mut(row.first);
-            (&low[from..][..row.columns], &mut high[..row.columns])
-        }
-        Some(from) if from > row.first => {
-            let (low, high) = leaving.split_at_mut(from);
-            (&high[..row.columns], &mut low[row.first..][..row.columns])
-        }
-        _ => (&[], &mut leaving[row.first..][..row.columns]),
-    }
 }
 
 impl Crossing {
@@ -277,6 +278,13 @@ impl Crossing {
         }
         let passed = exp(-depth);
         Self { before, behind, passed, mean: (1.0 - passed) / depth }
+    }
+
+    /// The same along the opposite direction, if that is asked for.
+    #[inline]
+    fn turned(&self, opposite: bool) -> Self {
+        let Self { before, behind, .. } = *self;
+        if opposite { Self { before: behind, behind: before, ..*self } } else { *self }
     }
 
     /// Light that leaves the cell, by the light that arrives. Replaces the radiance of its hair by the mean

@@ -1,7 +1,7 @@
 //! Light that hair and skin scatter many times, in the cells of a grid: part of `shade`.
 //!
 //! Hair is summed into cells with its mean direction, skin with its normal. Radiance is carried from cell to cell
-//! along 26 directions; what a cell's hair takes away it gives back as the fibre does, what skin takes away as a
+//! along directions of two sets that take turns; what a cell's hair takes away it gives back as the fibre does, what skin takes away as a
 //! matte surface does, once more with every round. The sum holds all light but that which comes straight from
 //! a light.
 
@@ -11,12 +11,13 @@ use glam::{Vec3, Vec4};
 use strandline_base::par::prelude::*;
 
 use super::light_carry::Carried;
+use super::light_scale::light_scales;
 use super::light_scene::{Cell, Scene};
 use super::light_sums::{HAIR_SUMS, SKIN_SUMS, UNITS, sum};
 use super::occlusion::{GridBox, toward};
 use crate::light_field::{self, Field};
 use crate::scatter::lattice::{ALL_DARK, Lattice};
-use crate::scatter::ways::Rays;
+use crate::scatter::ways::{DIRECTIONS, Rays, SETS};
 
 /// Cosine of the angle between lights that are taken for one where straight light enters the grid.
 const ONE_BEAM: f32 = 0.985;
@@ -41,6 +42,9 @@ pub struct LightGrid {
 struct Toward {
     lattice: Arc<Lattice>,
     eye: Vec3,
+    around: Field,
+    /// Number of sets along which light was carried; the mean of these is shown.
+    sets: usize,
 }
 
 /// All light but the straight one in a cell; what hair of its tangent shows toward the eye of it, and what the field
@@ -53,12 +57,15 @@ impl LightGrid {
         self.grid = scene.occlusion.grid();
         sum(&self.grid, scene, &mut self.parts);
         self.prepare(scene);
-        for _ in 0..scene.rounds {
-            self.carried.carry(&self.grid, &scene.around, false);
-            self.carried.scatter(&self.cells, scene);
+        // The last one is the first set's.
+        for round in (1..=scene.rounds as usize).rev() {
+            self.carried.carry(round % SETS, &scene.around);
+            self.carried.scatter(round % SETS, &self.cells, scene);
         }
-        self.carried.carry(&self.grid, &scene.around, true);
-        self.toward = Some(Toward { lattice: scene.lattice.clone(), eye: scene.eye });
+        self.carried.carry(0, &scene.around);
+        let sets = SETS.min(scene.rounds as usize + 1);
+        let (lattice, eye, around) = (scene.lattice.clone(), scene.eye, scene.around);
+        self.toward = Some(Toward { lattice, eye, around, sets });
         self.found.clear();
         self.found.resize_with(self.grid.cell_count(), OnceLock::new);
     }
@@ -139,24 +146,30 @@ impl LightGrid {
         });
         self.cells.clear();
         self.cells.par_extend(holding);
+        let reached = |cell: &Cell, light: usize| number(cell.index, HAIR_SUMS + light) / cell.hair;
+        self.carried.lay(&grid, &self.cells);
+        let scales = light_scales(&grid, &self.cells, &self.carried, scene.lights, &reached);
         let straight = |cell: &Cell| {
-            let reached = |light: usize| number(cell.index, HAIR_SUMS + light) / cell.hair;
+            let reached = |light: usize| scales[light] * reached(cell, light);
             straight_light(cell, grid.middle(cell.index), scene, &reached)
         };
         // As if the surroundings reached every hair: even light is found at once.
         let even = |cell: &Cell| around * scene.lattice.albedo(&cell.mix);
         let skin = |cell: &Cell| (cell.skin_light + around) * cell.skin_color;
-        self.carried.begin(&grid, &self.cells, even, straight, skin);
+        self.carried.begin(&self.cells, scene.lattice, even, straight, skin);
     }
 
     /// Sums what was carried through a cell into a field, and finds what its hair shows toward the eye.
     #[cold]
     fn gather(&self, index: usize) -> Found {
-        let rays = self.carried.rays(index);
-        let mut field = Field::default();
         let Some(toward) = &self.toward else { return Found::default() };
-        for (light, (way, share)) in rays.iter().zip(toward.lattice.ways()) {
-            light_field::add(&mut field, -*way, *light * *share);
+        let part = 1.0 / toward.sets as f32;
+        let rays: [Rays; SETS] = std::array::from_fn(|set| self.carried.rays(set, index, &toward.around));
+        let mut field = Field::default();
+        for (set, rays) in rays.iter().enumerate().take(toward.sets) {
+            for (light, (way, share)) in rays.iter().zip(toward.lattice.ways(set)) {
+                light_field::add(&mut field, -*way, *light * (*share * part));
+            }
         }
         let cell = self.carried.slot(index).map(|slot| &self.cells[slot]).filter(|cell| cell.hair > 0.0);
         let middle = self.grid.middle(index);
@@ -167,26 +180,29 @@ impl LightGrid {
 impl Toward {
     /// Radiance of a cell's hair toward the eye in the light along every direction, and the part that the
     /// field alone gives.
-    fn shown(&self, cell: &Cell, middle: Vec3, rays: &Rays, field: &Field) -> [Vec4; 2] {
+    fn shown(&self, cell: &Cell, middle: Vec3, rays: &[Rays; SETS], field: &Field) -> [Vec4; 2] {
         let to_eye = (self.eye - middle).normalize_or(Vec3::Z);
         let u = light_field::across(cell.tangent, to_eye);
         let mut sums = [Vec4::ZERO; 2];
-        let weights = self.lattice.weights(cell.tangent, to_eye, rays);
-        for ((weights, moments), share) in weights.zip(&cell.mix) {
-            let shown = rays.iter().zip(weights).fold(Vec4::ZERO, |sum, (ray, weight)| sum + *ray * weight);
-            let known = light_field::shown(field, &moments, cell.tangent, u);
-            // Weighted with the cell's hair: empty cells have no say.
-            let weight = *share * cell.hair;
-            sums = [sums[0] + shown * weight, sums[1] + known * weight];
+        for (set, rays) in rays.iter().enumerate().take(self.sets) {
+            let weights = self.lattice.weights(cell.tangent, to_eye, set, rays);
+            for ((weights, moments), share) in weights.zip(&cell.mix) {
+                let shown =
+                    rays.iter().zip(weights).fold(Vec4::ZERO, |sum, (ray, weight)| sum + *ray * weight);
+                let known = light_field::shown(field, &moments, cell.tangent, u);
+                // Weighted with the cell's hair: empty cells have no say.
+                let weight = *share * cell.hair;
+                sums = [sums[0] + shown * weight, sums[1] + known * weight];
+            }
         }
         sums
     }
 }
 
-/// Radiance of a cell's hair along every direction in direct light, of which a share of each light reaches
+/// Radiance of a cell's hair along every direction of each set in direct light, of which a share of each light reaches
 /// it.
-fn straight_light(cell: &Cell, middle: Vec3, scene: &Scene, reached: &dyn Fn(usize) -> f32) -> Rays {
-    let mut shown = Rays::default();
+fn straight_light(cell: &Cell, middle: Vec3, scene: &Scene, reached: &dyn Fn(usize) -> f32) -> [Rays; SETS] {
+    let mut shown = [[Vec4::ZERO; DIRECTIONS]; SETS];
     if cell.hair == 0.0 {
         return shown;
     }
@@ -195,13 +211,16 @@ fn straight_light(cell: &Cell, middle: Vec3, scene: &Scene, reached: &dyn Fn(usi
         if beam.light == Vec3::ZERO {
             return;
         }
-        let shows = shows.get_or_insert_with(|| scene.lattice.shows(cell.tangent));
+        let views = || std::array::from_fn(|set| scene.lattice.shows(cell.tangent, set));
+        let shows: &[_; SETS] = shows.get_or_insert_with(views);
         let (to_light, light) = (beam.way.normalize_or(Vec3::Y), beam.light);
         let ordered = (to_light, light * cell.order);
-        scene.lattice.add_light(cell.tangent, shows, &cell.mix, ordered, &mut shown);
         // Irradiance, pi times the radiance, over the whole sphere.
         let even = scene.lattice.albedo(&cell.mix) * light.extend(0.0) * (0.25 * (1.0 - cell.order));
-        shown.iter_mut().for_each(|shown| *shown += even);
+        for (shown, shows) in shown.iter_mut().zip(shows) {
+            scene.lattice.add_light(cell.tangent, shows, &cell.mix, ordered, shown);
+            shown.iter_mut().for_each(|shown| *shown += even);
+        }
     };
     let mut beam = Beam::default();
     for (light, source) in scene.lights.iter().enumerate() {

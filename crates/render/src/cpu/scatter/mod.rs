@@ -2,6 +2,7 @@
 
 mod light_carry;
 pub mod light_grid;
+mod light_scale;
 pub mod light_scene;
 mod light_sums;
 pub(crate) mod mixture;

@@ -6,7 +6,7 @@ use strandline_gpu::{Bindings, Bound, Buffer, Declaration, Gpu, GpuError, Kernel
 use crate::RenderError;
 use crate::fibre::chiang::{AROUND, ENTRIES, Table};
 use crate::gpu::MAX_SHADOWS;
-use crate::gpu::buffers::{CELLS, Groom, Maps, PLANE, Strands, Targets};
+use crate::gpu::buffers::{CELLS, Groom, LONGEST_LINE, Maps, Strands, Targets};
 use crate::gpu::inputs::Frame;
 use crate::gpu::records::{LightCell, Vertex};
 use crate::gpu::shade::LightSkin;
@@ -14,17 +14,19 @@ use crate::scatter::inclination::Inclination;
 use crate::scatter::lattice::MOST_ENDS;
 use crate::scatter::made::Made;
 use crate::scatter::source::Source;
-use crate::scatter::ways::{DIRECTIONS, TANGENTS};
+use crate::scatter::ways::{DIRECTIONS, SETS, TANGENTS};
 
 /// Sums of a cell: see light_sums.wesl.
 const SUMS: usize = 14 + MAX_SHADOWS;
 /// Vectors of a cell behind the fibre's tables, and where they begin.
 const GLOW: usize = 13;
 const FIRST_GLOW: usize = 28_672;
-/// Lines that begin on one of three faces of the grid.
-pub(crate) const LINES: usize = 3 * PLANE;
-/// Threads of a cell that scatters: directions, rounded up.
-const SCATTERERS: usize = 32;
+/// Place of the scales of straight light behind these.
+const FIRST_SCALE: usize = SUMS * CELLS;
+/// Lines of cells along a direction: see light_lines.wesl.
+pub(crate) const LINES: usize = 4 * LONGEST_LINE * LONGEST_LINE;
+/// Threads of a cell that scatters: directions and one for skin, rounded up.
+const SCATTERERS: usize = 64;
 
 kernel! {
     /// One thread is one segment.
@@ -55,11 +57,32 @@ kernel! {
     /// One thread is one cell.
     pub(crate) struct Prepare in "light_prepare" (crate::gpu::linked::LIGHT_PREPARE), entry "prepare" {
         0 frame: Read Frame,
+        6 cubes: Read [f32; 4],
+        9 sums: ReadWrite u32,
+        10 cells: ReadWrite LightCell,
+    }
+}
+
+kernel! {
+    /// One thread is one line of cells along one light.
+    pub(crate) struct Weigh in "light_scale" (crate::gpu::linked::LIGHT_SCALE), entry "weigh" {
+        0 frame: Read Frame,
+        9 sums: ReadWrite u32,
+        10 cells: ReadWrite LightCell,
+    }
+}
+
+kernel! {
+    /// One thread is one cell.
+    pub(crate) struct Enter in "light_enter" (crate::gpu::linked::LIGHT_ENTER), entry "enter" {
+        0 frame: Read Frame,
         4 open: Read [f32; 4],
         6 cubes: Read [f32; 4],
         9 sums: ReadWrite u32,
         10 cells: ReadWrite LightCell,
         11 rays: ReadWrite [f32; 4],
+        12 ways: Read [f32; 4],
+        13 straight: ReadWrite [f32; 4],
     }
 }
 
@@ -69,6 +92,7 @@ kernel! {
         0 frame: Read Frame,
         10 cells: ReadWrite LightCell,
         11 rays: ReadWrite [f32; 4],
+        12 ways: Read [f32; 4],
     }
 }
 
@@ -79,6 +103,8 @@ kernel! {
         6 cubes: Read [f32; 4],
         10 cells: ReadWrite LightCell,
         11 rays: ReadWrite [f32; 4],
+        12 ways: Read [f32; 4],
+        13 straight: ReadWrite [f32; 4],
     }
 }
 
@@ -91,6 +117,7 @@ kernel! {
         7 glow: ReadWrite [f32; 4],
         10 cells: ReadWrite LightCell,
         11 rays: ReadWrite [f32; 4],
+        12 ways: Read [f32; 4],
     }
 }
 
@@ -107,11 +134,13 @@ kernel! {
 }
 
 /// The declarations of its kernels.
-pub(crate) fn declarations() -> [Declaration; 7] {
+pub(crate) fn declarations() -> [Declaration; 9] {
     [
         SumHair::declaration(),
         SumSkin::declaration(),
         Prepare::declaration(),
+        Weigh::declaration(),
+        Enter::declaration(),
         Carry::declaration(),
         Scatter::declaration(),
         Gather::declaration(),
@@ -124,6 +153,8 @@ pub(crate) struct LightGrid {
     sum_hair: Kernel<SumHair<'static>>,
     sum_skin: Kernel<SumSkin<'static>>,
     prepare: Kernel<Prepare<'static>>,
+    weigh: Kernel<Weigh<'static>>,
+    enter: Kernel<Enter<'static>>,
     carry: Kernel<Carry<'static>>,
     scatter: Kernel<Scatter<'static>>,
     gather: Kernel<Gather<'static>>,
@@ -132,6 +163,7 @@ pub(crate) struct LightGrid {
     sums: Buffer<u32>,
     cells: Buffer<LightCell>,
     rays: Buffer<[f32; 4]>,
+    sets: [SetBuffers; SETS],
     /// The fibre's tables with its scattering among directions.
     lattice: Buffer<[f32; 4]>,
     /// The fibre's tables, and scattered light of every cell.
@@ -140,32 +172,49 @@ pub(crate) struct LightGrid {
     bounds: Option<Bounds>,
 }
 
+/// Buffers of one set of directions.
+struct SetBuffers {
+    ways: Buffer<[f32; 4]>,
+    straight: Buffer<[f32; 4]>,
+}
+
 /// The kernels, bound to the buffers of the moment.
 pub(crate) struct Bounds {
     pub sum_hair: Bound,
     pub sum_skin: Bound,
     pub prepare: Bound,
-    pub carry: Bound,
-    pub scatter: Bound,
-    pub gather: Bound,
+    pub weigh: Bound,
+    pub sets: [SetBounds; SETS],
     pub shade: Bound,
     pub light_skin: Bound,
 }
 
+/// The kernels of one set of directions; `scatter` is that of light along it toward the next set.
+pub(crate) struct SetBounds {
+    pub enter: Bound,
+    pub carry: Bound,
+    pub scatter: Bound,
+    pub gather: Bound,
+}
+
 impl LightGrid {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let [first, second] = [(); SETS].map(|()| SetBuffers::new(gpu));
         Ok(Self {
+            sets: [first?, second?],
             sum_hair: Kernel::new(gpu, &[])?,
             sum_skin: Kernel::new(gpu, &[])?,
             prepare: Kernel::new(gpu, &[])?,
+            weigh: Kernel::new(gpu, &[])?,
+            enter: Kernel::new(gpu, &[])?,
             carry: Kernel::new(gpu, &[])?,
             scatter: Kernel::new(gpu, &[])?,
             gather: Kernel::new(gpu, &[])?,
             shade: Kernel::new(gpu, &[])?,
             light_skin: Kernel::new(gpu, &[])?,
-            sums: Buffer::new(gpu, "sums of cells", SUMS * CELLS)?,
+            sums: Buffer::new(gpu, "sums of cells", FIRST_SCALE + 2 * MAX_SHADOWS)?,
             cells: Buffer::new(gpu, "cells", CELLS)?,
-            rays: Buffer::new(gpu, "light along directions", 2 * DIRECTIONS * CELLS)?,
+            rays: Buffer::new(gpu, "light along directions", DIRECTIONS * CELLS)?,
             lattice: Buffer::new(gpu, "scattering among directions", Made::lattice_len())?,
             glow: Buffer::new(gpu, "scattered light", FIRST_GLOW + GLOW * CELLS)?,
             made: None,
@@ -215,6 +264,9 @@ impl LightGrid {
         let numbers = |entries: Vec<Vec4>| entries.iter().map(|entry| entry.to_array()).collect::<Vec<_>>();
         self.glow.write(&numbers(table))?;
         self.lattice.write(&numbers(made.device_lattice()))?;
+        for (set, buffers) in self.sets.iter().enumerate() {
+            buffers.ways.write(&numbers(made.device_ways(set)))?;
+        }
         self.made = Some(made);
         Ok(())
     }
@@ -233,11 +285,11 @@ impl LightGrid {
         maps: &Maps,
         targets: &Targets,
     ) -> Result<Bounds, GpuError> {
-        let Groom { frame, cubes: open, triangles, vertices, corners, surfaces, .. } = groom;
+        let Groom { frame, triangles, vertices, corners, surfaces, .. } = groom;
         let Strands { points, radiances, .. } = strands;
         let Maps { texels: maps, body: body_depths, .. } = maps;
         let Targets { samples, triangles: triangle_numbers, depth: depths } = targets;
-        let Self { sums, cells, rays, lattice: cubes, glow, .. } = self;
+        let Self { sums, cells, lattice: cubes, glow, .. } = self;
         Ok(Bounds {
             sum_hair: self
                 .sum_hair
@@ -245,10 +297,9 @@ impl LightGrid {
             sum_skin: self
                 .sum_skin
                 .bind(gpu, &SumSkin { frame, maps, body_depths, triangles, vertices, sums })?,
-            prepare: self.prepare.bind(gpu, &Prepare { frame, open, cubes, sums, cells, rays })?,
-            carry: self.carry.bind(gpu, &Carry { frame, cells, rays })?,
-            scatter: self.scatter.bind(gpu, &Scatter { frame, cubes, cells, rays })?,
-            gather: self.gather.bind(gpu, &Gather { frame, open, cubes, glow, cells, rays })?,
+            prepare: self.prepare.bind(gpu, &Prepare { frame, cubes, sums, cells })?,
+            weigh: self.weigh.bind(gpu, &Weigh { frame, sums, cells })?,
+            sets: [self.bind_set(gpu, groom, 0)?, self.bind_set(gpu, groom, 1)?],
             shade: self
                 .shade
                 .bind(gpu, &ShadeChiang { frame, points, maps, body_depths, cubes: glow, radiances })?,
@@ -272,6 +323,32 @@ impl LightGrid {
     }
 }
 
+impl LightGrid {
+    /// Binds the kernels of a set of directions.
+    fn bind_set(&self, gpu: &Gpu, groom: &Groom, set: usize) -> Result<SetBounds, GpuError> {
+        let Groom { frame, cubes: open, .. } = groom;
+        let Self { sums, cells, rays, lattice: cubes, glow, .. } = self;
+        let SetBuffers { ways, straight } = &self.sets[set];
+        let next = &self.sets[(set + 1) % SETS].straight;
+        let enter = Enter { frame, open, cubes, sums, cells, rays, ways, straight };
+        Ok(SetBounds {
+            enter: self.enter.bind(gpu, &enter)?,
+            carry: self.carry.bind(gpu, &Carry { frame, cells, rays, ways })?,
+            scatter: self.scatter.bind(gpu, &Scatter { frame, cubes, cells, rays, ways, straight: next })?,
+            gather: self.gather.bind(gpu, &Gather { frame, open, cubes, glow, cells, rays, ways })?,
+        })
+    }
+}
+
+impl SetBuffers {
+    fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self {
+            ways: Buffer::new(gpu, "directions of a set", DIRECTIONS + 1)?,
+            straight: Buffer::new(gpu, "straight light along directions", DIRECTIONS * CELLS)?,
+        })
+    }
+}
+
 const _: () = assert!(ENTRIES <= FIRST_GLOW);
 
 impl Made {
@@ -289,6 +366,16 @@ impl Made {
         entries
     }
 
+    /// The directions of a set; behind them its number, 1 if light is gathered along another set before, and the share of
+    /// what is gathered along this one.
+    fn device_ways(&self, set: usize) -> Vec<Vec4> {
+        let sets = SETS.min(self.rounds() as usize + 1);
+        // The first set comes last.
+        let notes = [set as f32, f32::from(u8::from(set + 1 < sets)), 1.0 / sets as f32];
+        let ways = self.lattice.ways(set).iter().map(|(way, share)| way.extend(*share));
+        ways.chain([Vec3::from(notes).extend(0.0)]).collect()
+    }
+
     /// Single numbers, in the last lanes of the first entries.
     fn note(&self, table: &Table, entries: &mut [Vec4]) {
         let Source { fibre, darkest, lightest, .. } = self.from;
@@ -304,6 +391,6 @@ impl Made {
     }
 
     fn lattice_len() -> usize {
-        ENTRIES + TANGENTS + AROUND + MOST_ENDS * TANGENTS * DIRECTIONS * DIRECTIONS
+        ENTRIES + TANGENTS + AROUND + MOST_ENDS * SETS * TANGENTS * DIRECTIONS * DIRECTIONS
     }
 }

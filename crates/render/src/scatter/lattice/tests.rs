@@ -13,10 +13,10 @@ fn flat(sine: f32) -> f32 {
 #[test]
 fn even_light_stays_even_about_white_hair() {
     let lattice = Lattice::new(&Chiang::default().lobes(), [0.0; 3], None);
-    for tangent in 0..TANGENTS {
+    for (set, tangent) in (0..SETS).flat_map(|set| (0..TANGENTS).map(move |tangent| (set, tangent))) {
         for order in [0.0, 0.3, 1.0] {
-            let mut shown = Rays::default();
-            lattice.add_shown(tangent, order, &ALL_DARK, &[Vec4::ONE; DIRECTIONS], &mut shown);
+            let mut shown = [Vec4::ZERO; DIRECTIONS];
+            lattice.add_shown(set, tangent, (order, &ALL_DARK), &[Vec4::ONE; DIRECTIONS], &mut shown);
             for shown in shown {
                 assert!((shown.x - 1.0).abs() < 1e-3, "{tangent}: {shown}");
             }
@@ -29,10 +29,16 @@ fn opposite_hair_scatters_as_its_own_tangent_says() {
     let lattice = Lattice::new(&Chiang::default().lobes(), [0.0; 3], None);
     let light: Rays = std::array::from_fn(|way| Vec4::splat((way * way % 7) as f32));
     for t in [lattice.tangents[40], -lattice.tangents[40]] {
-        let mut shown = Rays::default();
-        lattice.add_shown(lattice.nearest(t), 1.0, &ALL_DARK, &light, &mut shown);
-        for (shown, (way, _)) in shown.iter().zip(lattice.ways) {
-            let weights = lattice.weights_of(&lattice.ends[0].seen, t, way, &[0.0; DIRECTIONS]);
+        let mut shown = [Vec4::ZERO; DIRECTIONS];
+        lattice.add_shown(0, lattice.nearest(t), (1.0, &ALL_DARK), &light, &mut shown);
+        for (shown, (way, _)) in shown.iter().zip(lattice.ways(1)) {
+            let weights = lattice.weights_of(
+                &lattice.ends[0].seen,
+                t,
+                *way,
+                &lattice.arriving(t, 0),
+                &[0.0; DIRECTIONS],
+            );
             let expected: Vec4 = weights.iter().zip(&light).map(|(weight, light)| *weight * *light).sum();
             assert!((shown.x / expected.x - 1.0).abs() < 1e-3, "{t} {way}: {shown} {expected}");
         }
@@ -48,9 +54,9 @@ fn straight_light_is_shown_as_brightly_as_a_fibre_shows_it() {
     // At 12 and at 56 degrees from across the hair.
     for (to_light, most) in [(Vec3::X, 0.02), (Vec3::new(0.4, 0.7, 0.6), 0.08)] {
         let to_light = to_light.normalize();
-        let mut shown = Rays::default();
-        lattice.add_light(t, &lattice.shows(t), &ALL_DARK, (to_light, Vec3::ONE), &mut shown);
-        let mean: f32 = shown.iter().zip(lattice.ways()).map(|(shown, (_, share))| shown.x * share).sum();
+        let mut shown = [Vec4::ZERO; DIRECTIONS];
+        lattice.add_light(t, &lattice.shows(t, 1), &ALL_DARK, (to_light, Vec3::ONE), &mut shown);
+        let mean: f32 = shown.iter().zip(lattice.ways(1)).map(|(shown, (_, share))| shown.x * share).sum();
         let (mut expected, count) = (0.0, 20_000);
         for eye in 0..count {
             let height = 1.0 - (2 * eye + 1) as f32 / count as f32;
@@ -74,7 +80,7 @@ fn kept(lattice: &Lattice, shown: &[Vec3], power: impl Fn(usize, usize, usize) -
         let t = lattice.tangents[tangent];
         for (to, shown) in shown.iter().enumerate() {
             let left = t.dot(*shown);
-            for (from, (way, _)) in lattice.ways.iter().enumerate() {
+            for (from, (way, _)) in lattice.ways(0).iter().enumerate() {
                 let came = t.dot(*way);
                 let power = power(tangent, to, from) * flat(left);
                 let [second, own] = [left, came].map(|sine| sine * sine - 1.0 / 3.0);
@@ -92,25 +98,25 @@ fn kept(lattice: &Lattice, shown: &[Vec3], power: impl Fn(usize, usize, usize) -
 fn carried_light_keeps_its_inclination_as_long_as_a_fibre_lets_it() {
     let lobes = Chiang::default().lobes();
     let lattice = Lattice::new(&lobes, [0.0; 3], None);
-    let ways = lattice.ways.map(|(way, _)| way);
+    let ways = lattice.ways(1).map(|(way, _)| way);
     let carried = kept(&lattice, &ways, |tangent, to, from| {
-        lattice.ends[0].shown[tangent][to][from].x * lattice.ways[to].1
+        lattice.shown_by(&lattice.ends[0], 0, tangent)[from][to].x * lattice.ways(1)[to].1
     });
     let sphere: Vec<Vec3> = (0..TANGENTS).flat_map(|index| [tangent(index), -tangent(index)]).collect();
     let exact = Table::new(&lobes, [0.0; 3]);
     let seen = Seen::new(MEAN_SINE, Pigments::Even(1.0));
     let of_fibre = kept(&lattice, &sphere, |tangent, to, from| {
-        let (t, (way, share)) = (lattice.tangents[tangent], lattice.ways[from]);
+        let (t, (way, share)) = (lattice.tangents[tangent], lattice.ways(0)[from]);
         let u = light_field::across(t, sphere[to]);
         let arriving = Arriving::new(t, -way);
         let paths = paths_of(&exact, &exact.entries, u, &seen.at(t.dot(sphere[to])), &arriving);
         share * paths.into_iter().sum::<Vec3>().x
     });
-    // The directions carry half of the turn toward the root that the tilted scales make.
+    // The directions carry the turn toward the root that the tilted scales make; a single set of 26 carries half of it.
     let turned = carried[2] / of_fibre[2];
-    assert!((0.45..1.0).contains(&turned), "{} of {}", carried[2], of_fibre[2]);
+    assert!((0.9..1.1).contains(&turned), "{} of {}", carried[2], of_fibre[2]);
     for (carried, of_fibre) in carried.into_iter().zip(of_fibre).take(2) {
-        // With the lobes of straight light 0.936 and 0.877 are kept, a quarter less lost than by a fibre.
+        // Lobes widened by 0.006 lose 1.16 and 1.14 times as much.
         let lost = (1.0 - carried) / (1.0 - of_fibre);
         assert!((lost - 1.0).abs() < 0.1, "{carried} of {of_fibre}");
     }
