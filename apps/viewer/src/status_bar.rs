@@ -14,6 +14,8 @@ pub fn show(app: &App, ui: &mut egui::Ui) {
 
 fn words(app: &App, ui: &mut egui::Ui) {
     ui.horizontal(|ui| {
+        // Without a word too: between the end of a load and the first picture.
+        ui.set_min_height(ui.spacing().interact_size.y);
         loading::progress(app, ui);
         let Some(shown) = &app.shown else { return };
         ui.label(format!("{:.1} pictures/s", app.rate)).on_hover_text("pictures a second, smoothed");

@@ -4,6 +4,7 @@
 //! (`STRANDLINE_WRITE_BITS=1`) in a commit of its own that says why.
 
 use std::fmt::Write;
+use std::path::Path;
 
 use strandline::{Backend, Devices, Event, Player, Scene, Style, scene::MotionName};
 
@@ -18,6 +19,19 @@ fn small(mut scene: Scene) -> Scene {
     // Small pictures of all strands.
     scene.level_of_detail.by_pixel = false;
     scene
+}
+
+/// What the scenes of styles leave out: strands of their own between guides, also on a skin that moves, and strands that
+/// push each other apart.
+fn others() -> [(String, Scene); 3] {
+    let mut between = small(Scene::demo());
+    (between.groom.bound, between.look.follow_strands) = (Some(480), 1);
+    let mut skin = between.clone();
+    skin.body.file = Some(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/bust.glb"));
+    (skin.body.clip, skin.motion.name) = (Some("look".to_owned()), MotionName::Still);
+    let mut contact = small(Scene::demo());
+    contact.simulation.contact.enabled = true;
+    [("between", between), ("skin", skin), ("contact", contact)].map(|(name, scene)| (name.to_owned(), scene))
 }
 
 /// Sums of the bits of the last step and of the last picture.
@@ -49,11 +63,12 @@ fn built_in_scenes_have_the_bits_that_they_had() {
     };
     let thesis = [("thesis".to_string(), Scene::thesis())];
     let mut found = String::new();
-    for (name, scene) in Style::ALL.into_iter().map(styled).chain(thesis) {
-        let [step, picture] = sums(&small(scene));
+    let small = Style::ALL.into_iter().map(styled).chain(thesis).map(|(name, scene)| (name, small(scene)));
+    for (name, scene) in small.chain(others()) {
+        let [step, picture] = sums(&scene);
         writeln!(found, "{name} {step:08x} {picture:08x}").unwrap();
     }
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/same_bits.txt");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/same_bits.txt");
     if std::env::var_os("STRANDLINE_WRITE_BITS").is_some_and(|value| value == "1") {
         std::fs::write(&path, &found).unwrap();
     }

@@ -1,5 +1,6 @@
 //! Overlays, the progress of a load, files that are watched, and mends as buttons.
 
+use std::cell::RefCell;
 use std::time::Duration;
 
 use eframe::egui::{self, Key, accesskit::Role};
@@ -182,7 +183,16 @@ fn words_that_come_and_go_leave_the_picture_its_size() {
     window.pass(Vec::new(), None);
     let size = |app: &App| [app.seen().picture.width, app.seen().picture.height];
     let first = size(window.app());
-    window.until("a picture", |app| app.shown().is_some_and(|shown| shown.step.is_some()));
+    // Between the end of the load and the first picture the bar has no words.
+    let others = RefCell::new(Vec::new());
+    window.until("a picture", |app| {
+        let now = size(app);
+        if now != first && !others.borrow().contains(&now) {
+            others.borrow_mut().push(now);
+        }
+        app.shown().is_some_and(|shown| shown.step.is_some())
+    });
+    assert_eq!(*others.borrow(), [[0; 2]; 0], "the first was {first:?}");
     window.press(Key::Space);
     window.settle();
     assert!(window.has_label("simulated and drawn on the CPU"));
