@@ -154,6 +154,15 @@ impl RecordedMotion {
         }
     }
 
+    /// How it is played, and the times \[s\] of its first and its last sample.
+    pub fn played(&self) -> (Playback, [f64; 2]) {
+        let begin = match &self.source {
+            Source::Node(rig, _) => rig.begin(),
+            Source::Joint(_) => 0.0,
+        };
+        (self.playback, [begin, self.end()])
+    }
+
     /// Way \[m\] of a head of 0.1 m about a pivot from the end of the motion to its beginning; 0 where it does not begin again,
     /// and where its beginning is marked as a jump.
     pub fn gap_of_loop(&self) -> f32 {

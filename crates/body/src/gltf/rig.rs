@@ -102,6 +102,12 @@ impl Rig {
         &self.teleports
     }
 
+    /// Time of the first key \[s\].
+    pub fn begin(&self) -> f64 {
+        let first = self.tracks.iter().filter_map(|track| track.times.first().copied());
+        first.reduce(f64::min).unwrap_or_default()
+    }
+
     /// Time of the last key \[s\].
     pub fn end(&self) -> f64 {
         self.tracks.iter().filter_map(|track| track.times.last()).fold(0.0, |end, time| time.max(end))

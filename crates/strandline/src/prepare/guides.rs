@@ -64,6 +64,7 @@ pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
             let moving: Vec<usize> = (0..parts.len()).filter(|part| parts[*part].is_some()).collect();
             let skin = moving::with_parts(scene, skin, parts.into_iter(), body)?;
             notes.extend(moving::open_loops(&skin, &moving));
+            notes.extend(moving::unseen_motions(scene, &skin, &moving));
             Some(skin)
         }
         _ => None,

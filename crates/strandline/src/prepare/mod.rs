@@ -207,6 +207,8 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
     let bounds = bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh.as_ref());
     let head = head_motion(&scene, pivot, bounds)?.with_body(skin).with_neck(neck);
     notes.extend(moving::open_loop("motion", head.gap_of_loop()));
+    let unseen = |(playback, span)| moving::unseen(&scene, "motion", playback, span);
+    notes.extend(head.played().and_then(unseen));
     Ok(Prepared { guides, bound, tags, mesh, hidden, colliders, head, pose, bounds, scene, placement, notes })
 }
 
