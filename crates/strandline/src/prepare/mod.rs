@@ -36,6 +36,7 @@ mod sources;
 mod start;
 mod unbrushed;
 mod units;
+mod unmoved;
 mod wrap;
 
 #[cfg(test)]

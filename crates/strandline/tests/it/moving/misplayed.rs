@@ -32,3 +32,18 @@ fn a_motion_outside_of_the_film_is_told() {
     head.motion.start = 2.0;
     assert!(notes_on(&head, "motion.start").is_empty());
 }
+
+#[test]
+fn settings_of_a_motion_without_one_are_told() {
+    let mut rests = scene("nod");
+    (rests.body.clip, rests.body.start, rests.body.r#loop) = (None, 0.5, true);
+    rests.body.parts = vec![BodyPart { file: bust(), speed: 2.0, visible: false, ..BodyPart::default() }];
+    let note = "body.start, body.loop are not used, as the body does not move by itself: body.clip plays one of its clips: \
+                `nod`, `look`, `shrug`, `smile`";
+    let of_part = "body.parts[0].speed is not used, as the part rides the head: body.parts[0].clip plays one of its clips: \
+                   `nod`, `look`, `shrug`, `smile`";
+    assert_eq!(notes_on(&rests, "not used"), [note, of_part]);
+    rests.body.parts.clear();
+    rests.body.clip = Some("nod".to_owned());
+    assert!(notes_on(&rests, "not used").is_empty());
+}
