@@ -8,7 +8,7 @@ use strandline_base::math;
 
 use crate::bvh::{self, JointMotion};
 use crate::gltf::{self, Fault, Rig};
-use crate::leaps::Leaps;
+use crate::leaps::{Leap, Leaps};
 use crate::parsing::{A_NAME, read_file, remedy};
 use crate::teleports::Teleports;
 use crate::{BodyError, Playback, Pose};
@@ -135,6 +135,17 @@ impl RecordedMotion {
         let by = if by.as_vec3().is_finite() { by } else { DVec3::ZERO };
         pose.translation += (by - origin.as_dvec3()).as_vec3();
         pose
+    }
+
+    /// The first way \[m\] and its time \[s\] between two samples that are too far apart for a person's head, where the next one
+    /// is too: a file in centimetres has many, and a motion that is cut has single ones.
+    pub fn far_way(&self) -> Option<(f32, f64)> {
+        let far = |[from, to]: [f64; 2]| {
+            let [start, end] = [from, to].map(|time| self.joint(time).1);
+            let way = (self.scale * start.distance(end)) as f32;
+            Leap { way, turn: 0.0 }.is_jump(to - from).then_some((way, to - from))
+        };
+        self.leaps.chained().find_map(|[one, other]| far(one).filter(|_| far(other).is_some()))
     }
 
     /// Number of marks and jumps up to a time \[s\]; `None` of a motion without any.

@@ -209,6 +209,7 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
     let head = head_motion(&scene, pivot, bounds)?.with_body(skin).with_neck(neck);
     notes.extend(moving::open_loop("motion", head.gap_of_loop()));
     let unseen = |(playback, span)| moving::unseen(&scene, "motion", playback, span);
+    notes.extend(key_units::of_file(&scene, head.recorded()));
     notes.extend(head.played().and_then(unseen));
     Ok(Prepared { guides, bound, tags, mesh, hidden, colliders, head, pose, bounds, scene, placement, notes })
 }
