@@ -101,18 +101,30 @@ impl Mesh {
     /// # Errors
     /// See [`BodyError`]: files with other faces, more memory than may be taken.
     pub fn load_sequence(path: &Path, rate: f64) -> Result<(Self, VertexMotion), BodyError> {
+        Self::load_sequence_noted(path, rate).map(|(mesh, motion, _)| (mesh, motion))
+    }
+
+    /// As [`Mesh::load_sequence`], with notes on what is odd in the first file but could be read, human-readable. Looks are those
+    /// of the first file: the others give vertices alone.
+    ///
+    /// # Errors
+    /// See [`BodyError`].
+    pub fn load_sequence_noted(
+        path: &Path,
+        rate: f64,
+    ) -> Result<(Self, VertexMotion, Vec<String>), BodyError> {
         if pattern(path).is_none() && !path.is_dir() {
-            return of_arrays(path, rate);
+            return of_arrays(path, rate).map(|(mesh, motion)| (mesh, motion, Vec::new()));
         }
         let files = sequence(path)?;
         let Some((_, first)) = files.first() else {
             return Err(out_of_sequence(path, ("no such .obj file".into(), "files of a mesh in motion")));
         };
-        let mesh = Self::load(first, 1.0)?;
+        let (mesh, notes) = Self::load_noted(first, 1.0)?;
         let (count, each) = (files.len() as u64, 12 * mesh.positions.len() as u64);
         memory::check(&[Need::new("the frames of the body", count, each)])?;
         let read = |(_, file): &(u64, PathBuf)| {
-            let frame = Self::load(file, 1.0)?;
+            let frame = Self::load_shape(file)?;
             if frame.triangles != mesh.triangles || frame.positions.len() != mesh.positions.len() {
                 return Err(out_of_sequence(
                     file,
@@ -121,10 +133,11 @@ impl Mesh {
             }
             Ok(frame.positions)
         };
-        let frames: Vec<Vec<Vec3>> = files.par_iter().map(read).collect::<Result<_, _>>()?;
+        let further: Vec<Vec<Vec3>> = files[1..].par_iter().map(read).collect::<Result<_, _>>()?;
+        let frames = std::iter::once(mesh.positions.clone()).chain(further).collect();
         let start = files[0].0;
         let times = files.iter().map(|(number, _)| (number - start) as f64 / rate).collect();
-        Ok((mesh, VertexMotion::sampled(times, frames)?))
+        Ok((mesh, VertexMotion::sampled(times, frames)?, notes))
     }
 }
 
