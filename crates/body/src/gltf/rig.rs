@@ -273,6 +273,23 @@ impl Rig {
         self.names.iter().position(|own| own.as_deref() == Some(name))
     }
 
+    /// True where the clip has keys of a node or of one above it.
+    pub fn moves(&self, node: usize) -> bool {
+        let above = |node: usize| self.order.iter().find(|(own, _)| *own == node).and_then(|(_, above)| *above);
+        std::iter::successors(Some(node), |node| above(*node)).any(|node| self.has_keys(node))
+    }
+
+    /// True where the clip has keys of the transform of a node.
+    fn has_keys(&self, node: usize) -> bool {
+        self.tracks.iter().any(|track| track.node == node && track.property != Property::Weights)
+    }
+
+    /// The names of nodes that have keys.
+    pub fn moved_names(&self) -> impl Iterator<Item = &str> {
+        let names = self.names.iter().enumerate().filter(|(node, _)| self.has_keys(*node));
+        names.filter_map(|(_, name)| name.as_deref())
+    }
+
     /// The names of nodes.
     pub fn node_names(&self) -> impl Iterator<Item = &str> {
         self.names.iter().flatten().map(String::as_str)

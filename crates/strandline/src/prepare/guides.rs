@@ -212,7 +212,7 @@ fn start(
     skin: Option<&SkinMotion>,
     colliders: &[Collider],
 ) -> Result<Start, Error> {
-    let head = head_motion(scene, pivot, bounds(strands, mesh.filter(|_| scene.body.visible)))?;
+    let (head, _) = head_motion(scene, pivot, bounds(strands, mesh.filter(|_| scene.body.visible)))?;
     let head = head.with_body(skin.cloned()).with_neck(mesh.and_then(|mesh| mesh.neck));
     let time = if scene.groom.pose.is_some() { 0.0 } else { scene.film.start };
     let (origin, _) = about(head.origin_at(time), colliders.to_vec());
