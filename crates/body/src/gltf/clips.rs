@@ -1,5 +1,7 @@
 //! Clips of a glTF file: names, and the tracks of one of them.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use ::gltf::Document;
 use ::gltf::accessor::{Accessor, DataType};
 use ::gltf::json::Value;
@@ -27,13 +29,14 @@ impl Clips {
         }
     }
 
-    /// Names, in their order; a clip without a name has that of its number.
+    /// Names, in their order, each of one clip: a clip without a name has that of its number, and the second one of a name has
+    /// a 2 in brackets behind it.
     pub fn names(&self) -> Vec<String> {
         let name = |(index, clip): (usize, &Value)| {
             let own = clip.get("name").and_then(Value::as_str).filter(|name| !name.is_empty());
             own.map_or_else(|| format!("clip {index}"), str::to_owned)
         };
-        self.0.iter().enumerate().map(name).collect()
+        told_apart(self.0.iter().enumerate().map(name).collect())
     }
 
     /// A clip by its name. Upper and lower case are the same where no name is equal.
@@ -110,6 +113,27 @@ impl Clips {
         }
         Ok(tracks)
     }
+}
+
+/// Names of which no two are equal: the first of equal ones stays, and the others have a number behind them.
+fn told_apart(names: Vec<String>) -> Vec<String> {
+    let mut taken: BTreeSet<String> = names.iter().cloned().collect();
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    let unique = |name: String| {
+        let count = counts.entry(name.clone()).or_default();
+        *count += 1;
+        if *count == 1 {
+            return name;
+        }
+        loop {
+            let numbered = format!("{name} ({count})");
+            if taken.insert(numbered.clone()) {
+                return numbered;
+            }
+            *count += 1;
+        }
+    };
+    names.into_iter().map(unique).collect()
 }
 
 /// Says that a clip is not there.
@@ -197,5 +221,22 @@ fn numbers(buffers: &Buffers, output: &Accessor<'_>, property: Property) -> Resu
     match values.iter().all(|value| value.is_finite()) {
         true => Ok(values),
         false => Err((format!("accessor {} with values that are none", output.index()), "finite numbers")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clips_of_one_name_are_told_apart() {
+        let clips = ["go", "", "go", "stop", "go (2)", "go", "clip 1"];
+        let written = clips.map(|name| format!(r#"{{"name": "{name}", "extras": {{"teleports": [1]}}}}"#)).join(", ");
+        let clips = Clips::new(::gltf::json::deserialize::from_str(&format!("[{written}]")).ok());
+        let names = clips.names();
+        assert_eq!(names, ["go", "clip 1", "go (3)", "stop", "go (2)", "go (4)", "clip 1 (2)"]);
+        for (index, name) in names.iter().enumerate() {
+            assert!(std::ptr::eq(clips.find(name).unwrap(), &clips.0[index]), "{name}");
+        }
     }
 }
