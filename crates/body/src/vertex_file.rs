@@ -22,6 +22,8 @@ const RATES: [&str; 4] = ["fps", "frames_per_second", "mocap_framerate", "mocap_
 /// Largest .npy that is read \[byte\], and memory that its reader takes for each of them \[byte\].
 const FILE_LIMIT: u64 = 16 << 30;
 const TAKEN: u64 = 4;
+/// Memory that a number of an array takes beside its own bytes: one of double precision, and the place or index made of it \[byte\].
+const NUMBER: u64 = 12;
 /// Most meshes of a sequence.
 const MOST_FILES: usize = 100_000;
 
@@ -231,6 +233,8 @@ fn arrays(path: &Path) -> Result<Found, BodyError> {
     let mut array = |names: &[&str]| {
         for name in names {
             if let Some(mut rows) = npz.open(name).map_err(|error| malformed(&error))? {
+                let (count, each) = (rows.bytes() / rows.kind().bytes(), rows.kind().bytes());
+                memory::check(&[Need::new(format!("the array `{name}` of the body"), count, each + NUMBER)])?;
                 let bytes = npz.all(&mut rows).map_err(|error| malformed(&error))?;
                 return Ok(Some(Numbers { kind: rows.kind(), shape: rows.shape().to_vec(), bytes }));
             }

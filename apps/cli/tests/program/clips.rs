@@ -33,3 +33,51 @@ fn a_clip_is_played_by_its_name() {
     let words = String::from_utf8_lossy(&output.stderr);
     assert!(!output.status.success() && words.contains("bust.glb: `nod`, `look`"), "{words}");
 }
+
+/// Runs `sim` on a body under a limit of memory, which refuses it.
+#[cfg(target_os = "linux")]
+fn refused(name: &str, bytes: &[u8], arguments: &[&str], words: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join(name), bytes).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_strandline"))
+        .args(["sim", "--frames", "1", "--set", "style.strand_count=10", "--body", name])
+        .args(arguments)
+        .env("STRANDLINE_MEMORY", "256")
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{error}");
+    assert!(error.contains(words) && error.contains("more than the 256 MiB"), "{error}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn numbers_of_small_files_are_counted_before_they_are_read() {
+    use super::hostile_files::{ROW, cache};
+    let vertices = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].map(f32::to_le_bytes).concat();
+    let [of_vertices, of_faces] = [("<f4", "1, 3, 3"), ("|u1", "7000000, 3")]
+        .map(|(kind, shape)| format!("'descr': '{kind}', {ROW}: ({shape})"));
+    let arrays = [
+        ("vertices.npy", of_vertices.as_str(), &vertices[..], 1),
+        ("faces.npy", of_faces.as_str(), &[0; 3000][..], 7000),
+    ];
+    refused("walk.npz", &cache(&arrays), &[], "the array `faces` of the body would take 261 MiB");
+    // Zeros but for the first one: many keys of a small file, in many channels.
+    let sparse = |kind: &str| {
+        format!(
+            r#"{{"componentType":5126,"count":65536,"type":"{kind}","sparse":{{"count":1,"indices":{{"bufferView":0,
+"componentType":5125}},"values":{{"bufferView":0}}}}}}"#
+        )
+    };
+    let channel = r#"{"sampler":0,"target":{"node":0,"path":"translation"}}"#;
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"nodes":[{{}}],"buffers":[{{"byteLength":12,
+"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAA"}}],"bufferViews":[{{"buffer":0,"byteLength":12}}],
+"accessors":[{},{}],"animations":[{{"name":"go","samplers":[{{"input":0,"output":1}}],"channels":[{}]}}]}}"#,
+        sparse("SCALAR"),
+        sparse("VEC3"),
+        [channel; 120].join(",")
+    );
+    refused("go.gltf", json.as_bytes(), &["--clip", "go"], "the keys of the clip of the body would take");
+}

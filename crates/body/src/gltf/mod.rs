@@ -71,7 +71,7 @@ pub(crate) fn parse_moving(
     let tracks = file.clips.tracks(clip, &file.document, &file.buffers, notes)?;
     let mut rig = Rig::new(&nodes, tracks);
     rig.set_teleports(file.clips.teleports(clip)?);
-    memory::check(&[rig.need(&nodes.shown, file.buffers.limit)]).map_err(Fault::Memory)?;
+    memory::check(&[rig.keys(), rig.need(&nodes.shown, file.buffers.limit)]).map_err(Fault::Memory)?;
     let add = &mut |node: &Node<'_>, part: &Primitive<'_>, influences| {
         rig.add(node, part, influences, &file.buffers)
     };

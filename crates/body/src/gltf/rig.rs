@@ -118,6 +118,12 @@ impl Rig {
         self.parts.iter().map(|part| part.base.len()).sum()
     }
 
+    /// Memory that the keys of the clip take.
+    pub(super) fn keys(&self) -> Need {
+        let bytes = self.tracks.iter().map(|track| 8 * track.times.len() + 4 * track.values.len());
+        Need::new("the keys of the clip of the body", bytes.sum::<usize>() as u64, 1)
+    }
+
     /// Memory that the parts of the shown nodes take at most; parts of more than `limit` vertices are refused later.
     pub(super) fn need(&self, shown: &[Node<'_>], limit: usize) -> Need {
         let of_part = |node: &Node<'_>, part: &Primitive<'_>| {
