@@ -17,8 +17,9 @@ use crate::teleports::Teleports;
 
 /// Most keys at which a clip is searched for mirror images.
 const MOST_KEYS: usize = 4096;
-/// Most spans between keys that are searched for jumps.
-const MOST_SPANS: usize = 1024;
+/// Most spans between keys that are searched for jumps, and the most of them times tracks and nodes that are sampled in each.
+const MOST_SPANS: usize = 1 << 16;
+const MOST_SAMPLED: usize = 2 << 20;
 /// Share of one node from which on a vertex moves rigidly with it.
 const RIGID: f32 = 0.99;
 
@@ -267,10 +268,32 @@ impl Rig {
 
     /// Spans \[s\] between two keys of a node that are far apart, the first ones of many.
     pub fn fast_spans(&self) -> Vec<[f64; 2]> {
+        let mut spans = self.all_fast_spans();
+        spans.truncate(self.most_spans());
+        spans
+    }
+
+    /// The note on spans that are too many to be searched for jumps.
+    pub(super) fn unsearched(&self) -> Option<String> {
+        let (spans, most) = (self.all_fast_spans(), self.most_spans());
+        let [from, _] = spans.get(most)?;
+        Some(format!(
+            "{} of {} spans between keys far apart are not searched for jumps, those from {from:.2} s on: marks in `teleports` \
+             carry hair over jumps there",
+            spans.len() - most,
+            spans.len()
+        ))
+    }
+
+    /// The number of spans that are searched for jumps.
+    fn most_spans(&self) -> usize {
+        (MOST_SAMPLED / (self.tracks.len() + self.rest.len()).max(1)).clamp(1, MOST_SPANS)
+    }
+
+    fn all_fast_spans(&self) -> Vec<[f64; 2]> {
         let mut spans: Vec<[f64; 2]> = self.tracks.iter().flat_map(Track::fast_spans).collect();
         spans.sort_by(|one, other| one[0].total_cmp(&other[0]).then(one[1].total_cmp(&other[1])));
         spans.dedup();
-        spans.truncate(MOST_SPANS);
         spans
     }
 
