@@ -97,6 +97,14 @@ impl Mesh {
         is_npz || pattern(path).is_some() || path.is_dir()
     }
 
+    /// The .obj files of a mesh in motion, in their order, of a folder or a pattern; none of another path, or where there are none.
+    pub fn sequence_files(path: &Path) -> Vec<PathBuf> {
+        if pattern(path).is_none() && !path.is_dir() {
+            return Vec::new();
+        }
+        sequence(path).unwrap_or_default().into_iter().map(|(_, file)| file).collect()
+    }
+
     /// Loads a mesh in motion: an .npz with vertices and `faces`, or .obj files with the same faces. The mesh at rest is
     /// the first frame. Files are `rate` \[Hz\] apart, those of a pattern by their numbers.
     ///

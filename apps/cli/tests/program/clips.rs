@@ -34,6 +34,48 @@ fn a_clip_is_played_by_its_name() {
     assert!(!output.status.success() && words.contains("bust.glb: `nod`, `look`"), "{words}");
 }
 
+#[test]
+fn info_knows_bodies_in_motion() {
+    let folder = tempfile::tempdir().unwrap();
+    for frame in 1..4 {
+        let text = format!("v 0 0 0\nv 1 0 0\nv 0 {frame} 0\nf 1 2 3\n");
+        std::fs::write(folder.path().join(format!("walk{frame:02}.obj")), text).unwrap();
+    }
+    let pattern = folder.path().join("walk%02d.obj");
+    for path in [&pattern, folder.path()] {
+        let output = strandline(&["info", path.to_str().unwrap()]);
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        let words = "mesh in motion\nvertices  3\ntriangles 1\nmotion    0.000 to 0.083 s\n";
+        assert!(output.status.success() && text.ends_with(words), "{text}{output:?}");
+    }
+    let output = strandline(&["info", "--json", pattern.to_str().unwrap()]);
+    let object: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(object["motion_s"][0], 0.0);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn info_knows_arrays_of_vertices() {
+    use super::hostile_files::{ROW, cache};
+    let vertices = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].map(f32::to_le_bytes).concat();
+    let array = |kind: &str, shape: &str| format!("'descr': '{kind}', {ROW}: ({shape})");
+    let [of_vertices, of_faces, of_times] =
+        [("<f4", "2, 3, 3"), ("|u1", "1, 3"), ("<f8", "2,")].map(|(kind, shape)| array(kind, shape));
+    let times = [41.5_f64, 42.0].map(f64::to_le_bytes).concat();
+    let arrays = [
+        ("vertices.npy", of_vertices.as_str(), &vertices[..], 2),
+        ("faces.npy", of_faces.as_str(), &[0, 1, 2][..], 1),
+        ("times.npy", of_times.as_str(), &times[..], 1),
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("walk.npz");
+    std::fs::write(&path, cache(&arrays)).unwrap();
+    let output = strandline(&["info", path.to_str().unwrap()]);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let words = "mesh in motion\nvertices  3\ntriangles 1\nmotion    41.500 to 42.000 s\n";
+    assert!(output.status.success() && text.ends_with(words), "{text}{output:?}");
+}
+
 /// Runs `sim` on a body under a limit of memory, which refuses it.
 #[cfg(target_os = "linux")]
 fn refused(name: &str, bytes: &[u8], arguments: &[&str], words: &str) {
