@@ -88,10 +88,12 @@ pub fn info(options: &InfoOptions) -> anyhow::Result<()> {
             Err(_) => return Err(error.into()),
         },
         // Arrays of strands, or of a body in motion.
-        (Err(error), None) => match is_npz.then(|| Mesh::load_sequence_noted(&options.file, FRAMES_PER_SECOND)) {
-            Some(Ok(body)) => return moving_info(options, body),
-            _ => return Err(error.into()),
-        },
+        (Err(error), None) => {
+            match is_npz.then(|| Mesh::load_sequence_noted(&options.file, FRAMES_PER_SECOND)) {
+                Some(Ok(body)) => return moving_info(options, body),
+                _ => return Err(error.into()),
+            }
+        }
     };
     if options.json {
         output::program(&format!("{}\n", serde_json::to_string(&report)?));

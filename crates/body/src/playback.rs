@@ -72,7 +72,10 @@ mod tests {
         assert!(plain.misses([0.0, 4.0], late) && !plain.misses([0.0, 42.0], late));
         assert!(!plain.misses([43.0, 43.0], late), "a picture");
         assert!(plain.misses([0.0, 4.0], [-1.0, 0.0]) && !plain.misses([0.0, 4.0], [-1.0, 0.1]));
-        assert!(!Playback { speed: 0.0, ..plain }.misses([0.0, 4.0], late), "it stands still as it is asked to");
+        assert!(
+            !Playback { speed: 0.0, ..plain }.misses([0.0, 4.0], late),
+            "it stands still as it is asked to"
+        );
         assert!(!Playback { start: 9.0, ..plain }.misses([0.0, 4.0], [3.0, 3.0]), "a pose");
         let backward = Playback { speed: -1.0, ..plain };
         assert!(backward.misses([0.0, 4.0], [0.0, 2.8]), "it begins at its beginning");

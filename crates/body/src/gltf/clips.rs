@@ -257,7 +257,8 @@ mod tests {
     #[test]
     fn clips_of_one_name_are_told_apart() {
         let clips = ["go", "", "go", "stop", "go (2)", "go", "clip 1"];
-        let written = clips.map(|name| format!(r#"{{"name": "{name}", "extras": {{"teleports": [1]}}}}"#)).join(", ");
+        let written =
+            clips.map(|name| format!(r#"{{"name": "{name}", "extras": {{"teleports": [1]}}}}"#)).join(", ");
         let clips = Clips::new(::gltf::json::deserialize::from_str(&format!("[{written}]")).ok());
         let names = clips.names();
         assert_eq!(names, ["go", "clip 1", "go (3)", "stop", "go (2)", "go (4)", "clip 1 (2)"]);

@@ -304,7 +304,8 @@ impl Rig {
 
     /// True where the clip has keys of a node or of one above it.
     pub fn moves(&self, node: usize) -> bool {
-        let above = |node: usize| self.order.iter().find(|(own, _)| *own == node).and_then(|(_, above)| *above);
+        let above =
+            |node: usize| self.order.iter().find(|(own, _)| *own == node).and_then(|(_, above)| *above);
         std::iter::successors(Some(node), |node| above(*node)).any(|node| self.has_keys(node))
     }
 

@@ -20,13 +20,13 @@ pub fn head_motion(
     let pivot = scene.motion.pivot.or(pivot).unwrap_or_else(|| low_center(bounds));
     let section = &scene.motion;
     let mut notes = Vec::new();
-    let mut load = |file: &PathBuf| {
+    let load = |file: &PathBuf| {
         let (clip, scale) = (section.clip.as_deref(), f64::from(section.scale));
         let (motion, odd) = RecordedMotion::load_noted(&scene.path(file), &section.joint, clip, scale)?;
         notes.extend(odd);
         motion.with_teleports(&TeleportSection::times(&section.teleports))
     };
-    let recorded = section.file.as_ref().map(&mut load).transpose()?;
+    let recorded = section.file.as_ref().map(load).transpose()?;
     let solids = solid_motions(&scene.colliders, section.interpolation)?;
     let head = HeadMotion::new(section, pivot)?.with_recorded(recorded).with_solids(solids);
     Ok((head, if section.name == MotionName::File { notes } else { Vec::new() }))

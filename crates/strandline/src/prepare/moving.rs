@@ -65,7 +65,9 @@ pub(super) fn with_parts(
 pub(super) fn unseen_motions(scene: &Scene, skin: &SkinMotion, parts: &[usize]) -> Vec<String> {
     let keys =
         std::iter::once("body".to_owned()).chain(parts.iter().map(|part| format!("body.parts[{part}]")));
-    keys.zip(skin.played()).filter_map(|(key, (playback, span))| unseen(scene, &key, playback, span)).collect()
+    keys.zip(skin.played())
+        .filter_map(|(key, (playback, span))| unseen(scene, &key, playback, span))
+        .collect()
 }
 
 /// The note on a motion of a section whose samples, from the first to the last \[s\], all lie before the film or after it.

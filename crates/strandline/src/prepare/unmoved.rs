@@ -30,15 +30,21 @@ pub(super) fn notes(sources: &Sources, scene: &Scene, moves: bool) -> Vec<String
         let keys = given(&key, (part.start, part.speed, part.r#loop, &part.teleports))?;
         let clips = clips(sources, scene, Some(&part.file));
         let clips = clips.unwrap_or_else(|| "its file has none".to_owned());
-        Some(format!("{keys} not used, as the part rides the head: {key}.clip plays one of its clips: {clips}"))
+        Some(format!(
+            "{keys} not used, as the part rides the head: {key}.clip plays one of its clips: {clips}"
+        ))
     });
     of_body.into_iter().chain(of_parts).collect()
 }
 
 /// The keys of a section that are not at their defaults, with a verb; `None` where all are.
 fn given(section: &str, (start, speed, is_loop, teleports): Settings<'_>) -> Option<String> {
-    let changed =
-        [("start", start != 0.0), ("speed", speed != 1.0), ("loop", is_loop), ("teleports", !teleports.is_empty())];
+    let changed = [
+        ("start", start != 0.0),
+        ("speed", speed != 1.0),
+        ("loop", is_loop),
+        ("teleports", !teleports.is_empty()),
+    ];
     let keys = changed.iter().filter(|(_, is_changed)| *is_changed);
     let keys: Vec<String> = keys.map(|(key, _)| format!("{section}.{key}")).collect();
     let verb = if keys.len() == 1 { "is" } else { "are" };

@@ -52,8 +52,10 @@ fn settings_of_a_motion_without_one_are_told() {
 fn a_recording_in_centimetres_is_told_and_its_jumps_are_counted() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("walk.bvh");
-    let frames: String = (0..121).map(|frame| format!(" {}", 6 * frame + frame % 12)).collect();
-    let text = "HIERARCHY ROOT Head { OFFSET 0 0 0 CHANNELS 1 Xposition } MOTION Frames: 121 Frame Time: 0.04";
+    let place = |frame: i32| f64::from(600 * frame + frame * frame) / 100.0;
+    let frames: String = (0..121).map(|frame| format!(" {}", place(frame))).collect();
+    let text =
+        "HIERARCHY ROOT Head { OFFSET 0 0 0 CHANNELS 1 Xposition } MOTION Frames: 121 Frame Time: 0.04";
     std::fs::write(&path, text.to_owned() + &frames).unwrap();
     let mut walks = Scene::demo();
     walks.set_style(Style::Bob);
@@ -61,7 +63,7 @@ fn a_recording_in_centimetres_is_told_and_its_jumps_are_counted() {
     (walks.groom.points_per_strand, walks.devices.simulation) = (4, Backend::Cpu);
     (walks.motion.name, walks.motion.file) = (MotionName::File, Some(path));
     (walks.film.frames, walks.film.frames_per_second) = (121, 25.0);
-    let note = "motion.file moves the head by 7 m in 0.04 s, again and again: motion.scale is 1 m, and of a file in centimetres \
+    let note = "motion.file moves the head by 6.01 m in 0.04 s, again and again: motion.scale is 1 m, and of a file in centimetres \
                 it is 0.01 m";
     assert_eq!(notes_on(&walks, "motion.scale"), [note]);
     let mut player = Player::new(&walks, walks.devices, false).unwrap();
@@ -72,7 +74,7 @@ fn a_recording_in_centimetres_is_told_and_its_jumps_are_counted() {
             _ => None,
         })
         .collect();
-    assert!(told.len() <= 9 && told.iter().any(|note| note == "the body has jumped 100 times"), "{told:#?}");
+    assert!(told.len() == 9 && told.iter().any(|note| note == "the body has jumped 100 times"), "{told:#?}");
     assert!(player.jumps().len() > 100, "{} jumps", player.jumps().len());
     let mut distinct = told.clone();
     distinct.dedup();
