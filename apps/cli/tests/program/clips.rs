@@ -82,7 +82,7 @@ fn refused(name: &str, bytes: &[u8], arguments: &[&str], words: &str) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join(name), bytes).unwrap();
     let output = Command::new(env!("CARGO_BIN_EXE_strandline"))
-        .args(["sim", "--frames", "1", "--set", "style.strand_count=10", "--body", name])
+        .args(["sim", "--frames", "1", "--look", "thesis", "--set", "style.strand_count=10", "--body", name])
         .args(arguments)
         .env("STRANDLINE_MEMORY", "256")
         .current_dir(folder.path())
