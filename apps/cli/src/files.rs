@@ -1,7 +1,7 @@
 //! `strandline groom`, `info` and `scene`: files without motion.
 
 use strandline::file::counted;
-use strandline::mesh::{Material, MeshFormat};
+use strandline::mesh::{Material, MeshFormat, VertexMotion};
 use strandline::{Groom, Mesh, Scene, format};
 
 use crate::arguments::{GroomOptions, InfoOptions, SceneOptions, Set, Usage};
@@ -73,16 +73,27 @@ const MOST_GROUPS: usize = 20;
 pub fn info(options: &InfoOptions) -> anyhow::Result<()> {
     let mesh_format = MeshFormat::of(&options.file).ok();
     if let Some(format @ (MeshFormat::Gltf | MeshFormat::Stl)) = mesh_format {
-        return body_info(options, format, Mesh::load_noted(&options.file, 1.0)?);
+        return body_info(options, of_mesh(format), Mesh::load_noted(&options.file, 1.0)?, None);
+    }
+    let is_npz = options.file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("npz"));
+    let is_mesh = mesh_format.is_some() || options.file.is_dir();
+    if is_mesh && Mesh::is_sequence(&options.file) {
+        return moving_info(options, Mesh::load_sequence_noted(&options.file, FRAMES_PER_SECOND)?);
     }
     let report = match (format::load(&options.file, &options.reading.options()), mesh_format) {
         (Ok(groom), _) => groom.report,
         // The formats of meshes that hold strands too.
         (Err(error), Some(format)) => match Mesh::load_noted(&options.file, 1.0) {
-            Ok(body) => return body_info(options, format, body),
+            Ok(body) => return body_info(options, of_mesh(format), body, None),
             Err(_) => return Err(error.into()),
         },
-        (Err(error), None) => return Err(error.into()),
+        // Arrays of strands, or of a body in motion.
+        (Err(error), None) => {
+            match is_npz.then(|| Mesh::load_sequence_noted(&options.file, FRAMES_PER_SECOND)) {
+                Some(Ok(body)) => return moving_info(options, body),
+                _ => return Err(error.into()),
+            }
+        }
     };
     if options.json {
         output::program(&format!("{}\n", serde_json::to_string(&report)?));
@@ -117,13 +128,36 @@ pub fn info(options: &InfoOptions) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Prints the contents of a body: its size, its materials and its clips.
+/// Rate of frames without times, that of `body.frames_per_second`.
+const FRAMES_PER_SECOND: f64 = 24.0;
+
+/// The name of a format.
+fn of_mesh(format: MeshFormat) -> &'static str {
+    match format {
+        MeshFormat::Gltf => "glTF",
+        MeshFormat::Obj => ".obj mesh",
+        MeshFormat::Ply => ".ply mesh",
+        MeshFormat::Stl => ".stl mesh",
+    }
+}
+
+/// Prints the contents of a body in motion.
+fn moving_info(
+    options: &InfoOptions,
+    (mesh, motion, notes): (Mesh, VertexMotion, Vec<String>),
+) -> anyhow::Result<()> {
+    body_info(options, "mesh in motion", (mesh, notes), Some([motion.begin(), motion.end()]))
+}
+
+/// Prints the contents of a body: its size, its materials, its clips, and the times \[s\] of its first and last frame where it has
+/// frames.
 fn body_info(
     options: &InfoOptions,
-    format: MeshFormat,
+    name: &str,
     (mesh, notes): (Mesh, Vec<String>),
+    motion: Option<[f64; 2]>,
 ) -> anyhow::Result<()> {
-    let has_clips = format == MeshFormat::Gltf;
+    let has_clips = MeshFormat::of(&options.file).is_ok_and(|format| format == MeshFormat::Gltf);
     let clips = if has_clips { Mesh::clip_names(&options.file)? } else { Vec::new() };
     let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
     let materials = mesh.materials.as_deref().cloned().unwrap_or_default();
@@ -148,22 +182,20 @@ fn body_info(
             "triangles": triangles,
             "materials": materials.list.iter().map(material).collect::<Vec<_>>(),
             "clips": clips,
+            "motion_s": motion,
             "notes": notes,
         });
         output::program(&format!("{object}\n"));
         return Ok(());
     }
-    let name = match format {
-        MeshFormat::Gltf => "glTF",
-        MeshFormat::Obj => ".obj mesh",
-        MeshFormat::Ply => ".ply mesh",
-        MeshFormat::Stl => ".stl mesh",
-    };
     print_line!("{}: {name}", options.file.display());
     print_line!("vertices  {vertices}");
     print_line!("triangles {triangles}");
     for material in &materials.list {
         print_line!("material  {}", described(material, size(material)));
+    }
+    if let Some([begin, end]) = motion {
+        print_line!("motion    {begin:.3} to {end:.3} s");
     }
     for clip in clips {
         print_line!("clip      {clip}");

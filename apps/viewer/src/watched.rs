@@ -4,12 +4,15 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
-use strandline::Scene;
+use strandline::{Mesh, Scene};
 
 /// Interval at which the times of files are read.
 pub const INTERVAL: Duration = Duration::from_millis(500);
 
-/// Time of the last change and size of a file; `None` while it is not there.
+/// Most files of a sequence that are looked at: some of those that are written anew are among them.
+const MOST_STAMPED: usize = 256;
+
+/// Time of the last change and size of a file, or of the files of a sequence in all; `None` while it is not there.
 type Stamp = Option<(SystemTime, u64)>;
 
 /// Reads the scene of the window anew.
@@ -32,6 +35,14 @@ pub struct Watch {
 }
 
 fn stamp(file: &Path) -> Stamp {
+    let frames = Mesh::sequence_files(file);
+    let every = frames.len().div_ceil(MOST_STAMPED).max(1);
+    let some = frames.iter().rev().step_by(every).filter_map(|frame| stamp_of_one(frame));
+    let all = some.reduce(|(one, length), (other, own)| (one.max(other), length + own));
+    all.map(|(time, length)| (time, length + frames.len() as u64)).or_else(|| stamp_of_one(file))
+}
+
+fn stamp_of_one(file: &Path) -> Stamp {
     let metadata = std::fs::metadata(file).ok()?;
     Some((metadata.modified().ok()?, metadata.len()))
 }
@@ -104,5 +115,27 @@ mod tests {
         std::fs::write(&body, b"v 0 0 0").unwrap();
         watch.changed();
         assert_eq!(watch.changed(), [body]);
+    }
+
+    #[test]
+    fn the_frames_of_a_sequence_are_watched() {
+        let folder = tempfile::tempdir().unwrap();
+        let frame = |number: usize| folder.path().join(format!("walk{number:02}.obj"));
+        (1..4).for_each(|number| std::fs::write(frame(number), b"v 0 0 0").unwrap());
+        for path in [folder.path().join("walk%02d.obj"), folder.path().to_owned()] {
+            let mut scene = Scene::demo();
+            scene.body.file = Some(path.clone());
+            let mut watch = Watch::default();
+            watch.note(&scene);
+            assert!(watch.changed().is_empty() && watch.changed().is_empty());
+            let text = std::fs::read(frame(2)).unwrap();
+            std::fs::write(frame(2), [&text[..], b"\nv 1 1 1"].concat()).unwrap();
+            watch.changed();
+            assert_eq!(watch.changed(), std::slice::from_ref(&path), "a frame");
+            let last = Mesh::sequence_files(&path).len() + 1;
+            std::fs::write(frame(last), b"v 0 0 0").unwrap();
+            watch.changed();
+            assert_eq!(watch.changed(), [path], "a further frame");
+        }
     }
 }

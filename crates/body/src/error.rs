@@ -17,6 +17,14 @@ pub enum BodyError {
         /// Error of the system.
         source: std::io::Error,
     },
+    /// The file of the head's motion could not be opened or read.
+    #[error("cannot read the motion of the head: {source}: {}", path.display())]
+    ReadMotion {
+        /// The file.
+        path: PathBuf,
+        /// Error of the system.
+        source: std::io::Error,
+    },
     /// The file is not a mesh that can be used.
     #[error("{found}, expected {expected}; {mend}: {}", path.display())]
     Mesh {

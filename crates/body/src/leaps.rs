@@ -71,6 +71,12 @@ impl Leaps {
         self.0.is_empty()
     }
 
+    /// Pairs of spans \[s\] of which the second begins where the first ends.
+    pub fn chained(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
+        let pairs = self.0.windows(2).map(|pair| [pair[0], pair[1]]);
+        pairs.filter(|[one, other]| one[1] == other[0])
+    }
+
     /// The time of the motion \[s\] that counts at a time of it: the beginning of a span within it.
     pub fn held(&self, time: f64) -> f64 {
         let next = self.0.partition_point(|[from, _]| *from < time);

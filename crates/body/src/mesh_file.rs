@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use glam::Vec3;
+use strandline_base::whole_lines;
 
 use crate::gltf::{self, Fault};
 use crate::mesh::vertex_normals;
 use crate::mesh_format::MeshFormat;
 use crate::parsing::{Refusal, read_file, remedy};
 use crate::part_names::Names;
-use crate::{BodyError, Mesh, VertexMotion};
+use crate::{BodyError, Mesh, VertexMotion, obj};
 
 /// Reads a file by its ending, or the part of it that has a name, in the units of the file; adds notes.
 fn read(path: &Path, names: Option<&mut Names>, notes: &mut Vec<String>) -> Result<Mesh, BodyError> {
@@ -63,6 +64,22 @@ impl Mesh {
         let mut mesh = read(path, None, &mut notes)?;
         mesh.positions.iter_mut().for_each(|position| *position *= scale);
         Ok((mesh.complete(path)?, notes))
+    }
+
+    /// Loads the vertices and triangles of a file, in its units; an .obj without its materials and their pictures.
+    pub(crate) fn load_shape(path: &Path) -> Result<Self, BodyError> {
+        let format = MeshFormat::of(path)?;
+        if format != MeshFormat::Obj {
+            return Self::load(path, 1.0);
+        }
+        let parsed = obj::parse(&whole_lines(&read_file(path)?));
+        let mesh = parsed.map_err(|(found, expected)| BodyError::Mesh {
+            path: path.into(),
+            found,
+            expected,
+            mend: format.mend(),
+        })?;
+        mesh.usable(path)
     }
 
     /// Loads a glTF file and its motion in a clip of a name, in the units of the file, with notes.
@@ -165,8 +182,8 @@ impl Mesh {
         parsed.map_err(|(found, expected)| BodyError::BadMesh { found, expected })?.complete(Path::new(""))
     }
 
-    /// Checks the mesh and gives a normal to every vertex without.
-    fn complete(mut self, path: &Path) -> Result<Self, BodyError> {
+    /// Checks the mesh of a file.
+    fn usable(self, path: &Path) -> Result<Self, BodyError> {
         self.check_usable().map_err(|error| match error {
             BodyError::BadMesh { found, expected } => BodyError::Mesh {
                 path: path.into(),
@@ -176,13 +193,19 @@ impl Mesh {
             },
             other => other,
         })?;
-        let computed = vertex_normals(&self.positions, &self.triangles);
-        self.normals.resize(self.positions.len(), Vec3::ZERO);
-        for (normal, computed) in self.normals.iter_mut().zip(computed) {
+        Ok(self)
+    }
+
+    /// Checks the mesh and gives a normal to every vertex without.
+    fn complete(self, path: &Path) -> Result<Self, BodyError> {
+        let mut mesh = self.usable(path)?;
+        let computed = vertex_normals(&mesh.positions, &mesh.triangles);
+        mesh.normals.resize(mesh.positions.len(), Vec3::ZERO);
+        for (normal, computed) in mesh.normals.iter_mut().zip(computed) {
             // In double precision: the square of a short normal underflows.
             *normal = normal.as_dvec3().try_normalize().map_or(computed, |unit| unit.as_vec3());
         }
-        Ok(self)
+        Ok(mesh)
     }
 }
 

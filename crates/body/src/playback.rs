@@ -25,6 +25,24 @@ impl Playback {
         if time.is_finite() { time } else { 0.0 }
     }
 
+    /// Times \[s\] of a motion, from the earliest to the latest, between two times of the scene \[s\], without going round.
+    pub fn played(&self, film: [f64; 2]) -> [f64; 2] {
+        let [one, other] = film.map(|time| self.start + self.speed * time);
+        [one.min(other), one.max(other)]
+    }
+
+    /// True where a motion with samples from `begin` to `end` \[s\] runs between two times of the scene \[s\], and all of
+    /// these lie before its beginning or after its end.
+    pub fn misses(&self, film: [f64; 2], [begin, end]: [f64; 2]) -> bool {
+        let [mut from, mut until] = self.played(film);
+        if self.is_loop && end > 0.0 {
+            let length = until - from;
+            from = from.rem_euclid(end);
+            until = from + length;
+        }
+        begin < end && from < until && (until <= begin || from >= end)
+    }
+
     /// Number of times that the motion has begun again.
     pub(crate) fn rounds(&self, time: f64, end: f64) -> f64 {
         let is_round = self.is_loop && end > 0.0;
@@ -45,6 +63,27 @@ mod tests {
         assert_eq!(Playback { speed: -1.0, ..playback }.time(1.0, 2.0), 1.5);
         assert_eq!(Playback { is_loop: false, ..playback }.time(5.0, 2.0), 10.5);
         assert_eq!(playback.time(f64::NAN, 2.0), 0.0);
+    }
+
+    #[test]
+    fn a_motion_outside_of_the_film_is_missed() {
+        let late = [41.7, 42.7];
+        let plain = Playback::default();
+        assert!(plain.misses([0.0, 4.0], late) && !plain.misses([0.0, 42.0], late));
+        assert!(!plain.misses([43.0, 43.0], late), "a picture");
+        assert!(plain.misses([0.0, 4.0], [-1.0, 0.0]) && !plain.misses([0.0, 4.0], [-1.0, 0.1]));
+        assert!(
+            !Playback { speed: 0.0, ..plain }.misses([0.0, 4.0], late),
+            "it stands still as it is asked to"
+        );
+        assert!(!Playback { start: 9.0, ..plain }.misses([0.0, 4.0], [3.0, 3.0]), "a pose");
+        let backward = Playback { speed: -1.0, ..plain };
+        assert!(backward.misses([0.0, 4.0], [0.0, 2.8]), "it begins at its beginning");
+        assert!(!Playback { start: 2.8, ..backward }.misses([0.0, 4.0], [0.0, 2.8]));
+        let rounds = Playback { is_loop: true, ..plain };
+        assert!(rounds.misses([0.0, 4.0], late) && !rounds.misses([0.0, 50.0], late));
+        assert!(!Playback { start: 500.0, ..rounds }.misses([0.0, 1.0], [0.0, 2.8]));
+        assert!(Playback { start: -1.0, speed: -1.0, ..rounds }.played([0.0, 4.0]) == [-5.0, -1.0]);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use strandline_base::math;
 
 use crate::bvh::{self, JointMotion};
 use crate::gltf::{self, Fault, Rig};
-use crate::leaps::Leaps;
+use crate::leaps::{Leap, Leaps};
 use crate::parsing::{A_NAME, read_file, remedy};
 use crate::teleports::Teleports;
 use crate::{BodyError, Playback, Pose};
@@ -40,17 +40,38 @@ impl RecordedMotion {
     /// # Errors
     /// See [`BodyError`]: another format, no joint or clip of that name, with the names that there are.
     pub fn load(path: &Path, joint: &str, clip: Option<&str>, scale: f64) -> Result<Self, BodyError> {
+        Self::load_noted(path, joint, clip, scale).map(|(motion, _)| motion)
+    }
+
+    /// As [`RecordedMotion::load`], with notes on what is odd but could be read, human-readable.
+    ///
+    /// # Errors
+    /// See [`BodyError`].
+    pub fn load_noted(
+        path: &Path,
+        joint: &str,
+        clip: Option<&str>,
+        scale: f64,
+    ) -> Result<(Self, Vec<String>), BodyError> {
         let refused = |(found, expected)| {
             let mend = remedy(expected, "export the motion again as .bvh or glTF 2.0");
             BodyError::Mesh { path: path.into(), found, expected, mend }
         };
-        let bytes = read_file(path)?;
+        let bytes = read_file(path).map_err(|error| match error {
+            BodyError::Read { path, source } => BodyError::ReadMotion { path, source },
+            other => other,
+        })?;
         if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("bvh")) {
-            return Ok(Self::of_joint(bvh::parse(&bytes, joint).map_err(refused)?, scale));
+            let note = clip.map(|_| "motion.clip is not used: a .bvh has one motion".to_owned());
+            let motion = Self::of_joint(bvh::parse(&bytes, joint).map_err(refused)?, scale);
+            return Ok((motion, note.into_iter().collect()));
         }
         let names = gltf::clip_names(&bytes).map_err(refused)?;
-        let clip = clip.or(names.first().map(String::as_str)).unwrap_or_default();
-        let read = gltf::parse_nodes(&bytes, path.parent(), clip, &mut Vec::new());
+        let Some(first) = names.first() else {
+            return Err(refused(("a file without clips".to_owned(), "a motion of the head")));
+        };
+        let (clip, mut notes) = (clip.unwrap_or(first), Vec::new());
+        let read = gltf::parse_nodes(&bytes, path.parent(), clip, &mut notes);
         let rig = read.map_err(|fault| match fault {
             Fault::Memory(error) => error.into(),
             Fault::Refused(refusal) => refused(refusal),
@@ -60,8 +81,16 @@ impl RecordedMotion {
             let found = format!("no node `{joint}` among {}", names.join(", "));
             return Err(refused((found, A_NAME)));
         };
+        notes.iter_mut().for_each(|note| note.insert_str(0, "motion.file: "));
+        if !rig.moves(node) {
+            let moved: Vec<_> = rig.moved_names().take(20).map(|name| format!("`{name}`")).collect();
+            notes.push(format!(
+                "motion.joint is `{joint}`, which the clip `{clip}` does not move: the head rests; nodes that move are {}",
+                if moved.is_empty() { "without names".to_owned() } else { moved.join(", ") }
+            ));
+        }
         let teleports = rig.teleports().clone();
-        Ok(Self::of(Source::Node(Arc::new(rig), node), scale, teleports))
+        Ok((Self::of(Source::Node(Arc::new(rig), node), scale, teleports), notes))
     }
 
     /// Reads the motion of a joint from the bytes of a .bvh.
@@ -137,6 +166,17 @@ impl RecordedMotion {
         pose
     }
 
+    /// The first way \[m\] and its time \[s\] between two samples that are too far apart for a person's head, where the next one
+    /// is too: a file in centimetres has many, and a motion that is cut has single ones.
+    pub fn far_way(&self) -> Option<(f32, f64)> {
+        let far = |[from, to]: [f64; 2]| {
+            let [start, end] = [from, to].map(|time| self.joint(time).1);
+            let way = (self.scale * start.distance(end)) as f32;
+            Leap { way, turn: 0.0 }.is_jump(to - from).then_some((way, to - from))
+        };
+        self.leaps.chained().find_map(|[one, other]| far(one).filter(|_| far(other).is_some()))
+    }
+
     /// Number of marks and jumps up to a time \[s\]; `None` of a motion without any.
     pub fn jumps_until(&self, time: f64) -> Option<i64> {
         let marks = &self.teleports;
@@ -152,6 +192,15 @@ impl RecordedMotion {
             Source::Node(rig, _) => rig.end(),
             Source::Joint(motion) => (motion.poses.len() - 1) as f64 * motion.frame_time,
         }
+    }
+
+    /// How it is played, and the times \[s\] of its first and its last sample.
+    pub fn played(&self) -> (Playback, [f64; 2]) {
+        let begin = match &self.source {
+            Source::Node(rig, _) => rig.begin(),
+            Source::Joint(_) => 0.0,
+        };
+        (self.playback, [begin, self.end()])
     }
 
     /// Way \[m\] of a head of 0.1 m about a pivot from the end of the motion to its beginning; 0 where it does not begin again,
@@ -290,6 +339,8 @@ mod tests {
         assert_eq!(motion.pose(0.0, Vec3::Y), Pose::IDENTITY);
         let pose = motion.pose(1.0, Vec3::Y);
         assert!(pose.rotation.is_normalized() && pose.rotation.angle_between(glam::Quat::IDENTITY) > 0.1);
+        let (_, notes) = RecordedMotion::load_noted(&path, "head", Some("spline"), 1.0).unwrap();
+        assert_eq!(notes, Vec::<String>::new());
         let absent = RecordedMotion::load(&path, "tail", None, 1.0).unwrap_err().to_string();
         assert!(
             absent.contains("no node `tail` among `root`, `hips`") && !absent.contains("export"),

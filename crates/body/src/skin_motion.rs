@@ -232,6 +232,13 @@ impl SkinMotion {
         BodyFrame::from(world_from_head).with_skin(skin).with_held(held_count)
     }
 
+    /// For each motion, in the order in which they were added, how it is played, and the times \[s\] of its first and its last
+    /// sample.
+    pub fn played(&self) -> Vec<(Playback, [f64; 2])> {
+        let of_part = |part: &Moving| (part.playback, [part.motion.begin(), part.motion.end()]);
+        self.parts.iter().map(of_part).collect()
+    }
+
     /// For each motion, in the order in which they were added, the greatest distance \[m\] between where vertices are at its
     /// end and where they are at its beginning; 0 for one that does not begin again, and for one whose beginning is marked as
     /// a jump.

@@ -22,6 +22,8 @@ const RATES: [&str; 4] = ["fps", "frames_per_second", "mocap_framerate", "mocap_
 /// Largest .npy that is read \[byte\], and memory that its reader takes for each of them \[byte\].
 const FILE_LIMIT: u64 = 16 << 30;
 const TAKEN: u64 = 4;
+/// Memory that a number of an array takes beside its own bytes: one of double precision, and the place or index made of it \[byte\].
+const NUMBER: u64 = 12;
 /// Most meshes of a sequence.
 const MOST_FILES: usize = 100_000;
 
@@ -95,24 +97,44 @@ impl Mesh {
         is_npz || pattern(path).is_some() || path.is_dir()
     }
 
+    /// The .obj files of a mesh in motion, in their order, of a folder or a pattern; none of another path, or where there are none.
+    pub fn sequence_files(path: &Path) -> Vec<PathBuf> {
+        if pattern(path).is_none() && !path.is_dir() {
+            return Vec::new();
+        }
+        sequence(path).unwrap_or_default().into_iter().map(|(_, file)| file).collect()
+    }
+
     /// Loads a mesh in motion: an .npz with vertices and `faces`, or .obj files with the same faces. The mesh at rest is
     /// the first frame. Files are `rate` \[Hz\] apart, those of a pattern by their numbers.
     ///
     /// # Errors
     /// See [`BodyError`]: files with other faces, more memory than may be taken.
     pub fn load_sequence(path: &Path, rate: f64) -> Result<(Self, VertexMotion), BodyError> {
+        Self::load_sequence_noted(path, rate).map(|(mesh, motion, _)| (mesh, motion))
+    }
+
+    /// As [`Mesh::load_sequence`], with notes on what is odd in the first file but could be read, human-readable. Looks are those
+    /// of the first file: the others give vertices alone.
+    ///
+    /// # Errors
+    /// See [`BodyError`].
+    pub fn load_sequence_noted(
+        path: &Path,
+        rate: f64,
+    ) -> Result<(Self, VertexMotion, Vec<String>), BodyError> {
         if pattern(path).is_none() && !path.is_dir() {
-            return of_arrays(path, rate);
+            return of_arrays(path, rate).map(|(mesh, motion)| (mesh, motion, Vec::new()));
         }
         let files = sequence(path)?;
         let Some((_, first)) = files.first() else {
             return Err(out_of_sequence(path, ("no such .obj file".into(), "files of a mesh in motion")));
         };
-        let mesh = Self::load(first, 1.0)?;
+        let (mesh, notes) = Self::load_noted(first, 1.0)?;
         let (count, each) = (files.len() as u64, 12 * mesh.positions.len() as u64);
         memory::check(&[Need::new("the frames of the body", count, each)])?;
         let read = |(_, file): &(u64, PathBuf)| {
-            let frame = Self::load(file, 1.0)?;
+            let frame = Self::load_shape(file)?;
             if frame.triangles != mesh.triangles || frame.positions.len() != mesh.positions.len() {
                 return Err(out_of_sequence(
                     file,
@@ -121,10 +143,11 @@ impl Mesh {
             }
             Ok(frame.positions)
         };
-        let frames: Vec<Vec<Vec3>> = files.par_iter().map(read).collect::<Result<_, _>>()?;
+        let further: Vec<Vec<Vec3>> = files[1..].par_iter().map(read).collect::<Result<_, _>>()?;
+        let frames = std::iter::once(mesh.positions.clone()).chain(further).collect();
         let start = files[0].0;
         let times = files.iter().map(|(number, _)| (number - start) as f64 / rate).collect();
-        Ok((mesh, VertexMotion::sampled(times, frames)?))
+        Ok((mesh, VertexMotion::sampled(times, frames)?, notes))
     }
 }
 
@@ -218,6 +241,8 @@ fn arrays(path: &Path) -> Result<Found, BodyError> {
     let mut array = |names: &[&str]| {
         for name in names {
             if let Some(mut rows) = npz.open(name).map_err(|error| malformed(&error))? {
+                let (count, each) = (rows.bytes() / rows.kind().bytes(), rows.kind().bytes());
+                memory::check(&[Need::new(format!("the array `{name}` of the body"), count, each + NUMBER)])?;
                 let bytes = npz.all(&mut rows).map_err(|error| malformed(&error))?;
                 return Ok(Some(Numbers { kind: rows.kind(), shape: rows.shape().to_vec(), bytes }));
             }

@@ -50,6 +50,11 @@ impl VertexFrames {
         Ok(Self { times, frames })
     }
 
+    /// Time of the first frame \[s\].
+    pub fn begin(&self) -> f64 {
+        self.times.first().copied().unwrap_or_default()
+    }
+
     /// Time of the last frame \[s\].
     pub fn end(&self) -> f64 {
         self.times.last().copied().unwrap_or_default()

@@ -72,6 +72,14 @@ impl VertexMotion {
         &self.teleports
     }
 
+    /// Time of the first sample \[s\].
+    pub fn begin(&self) -> f64 {
+        match &self.source {
+            Source::Clip(rig) => rig.begin(),
+            Source::Frames(frames, _) => frames.begin(),
+        }
+    }
+
     /// Time of the last sample \[s\]; those before the first and after the last are held.
     pub fn end(&self) -> f64 {
         match &self.source {

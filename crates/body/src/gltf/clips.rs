@@ -1,10 +1,14 @@
 //! Clips of a glTF file: names, and the tracks of one of them.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use ::gltf::Document;
 use ::gltf::accessor::{Accessor, DataType};
 use ::gltf::json::Value;
 use strandline_base::counted;
+use strandline_base::memory::{self, Need};
 
+use super::Fault;
 use super::buffers::Buffers;
 use super::track::{Property, Track, Way};
 use crate::parsing::{A_NAME, CLIPS, Refusal};
@@ -14,6 +18,9 @@ use crate::teleports::Teleports;
 const LISTED: usize = 20;
 /// Most numbers of all tracks of a clip: many channels may share the keys of a small file.
 const NUMBERS_LIMIT: usize = 32 << 20;
+/// Memory that a time and a value of a track take while they are read \[byte\].
+const TIME_BYTES: u64 = 16;
+const VALUE_BYTES: u64 = 8;
 
 /// The clips of a document, as they were written: the parser of shapes would refuse some that can be played.
 pub(super) struct Clips(Vec<Value>);
@@ -27,13 +34,14 @@ impl Clips {
         }
     }
 
-    /// Names, in their order; a clip without a name has that of its number.
+    /// Names, in their order, each of one clip: a clip without a name has that of its number, and the second one of a name has
+    /// a 2 in brackets behind it.
     pub fn names(&self) -> Vec<String> {
         let name = |(index, clip): (usize, &Value)| {
             let own = clip.get("name").and_then(Value::as_str).filter(|name| !name.is_empty());
             own.map_or_else(|| format!("clip {index}"), str::to_owned)
         };
-        self.0.iter().enumerate().map(name).collect()
+        told_apart(self.0.iter().enumerate().map(name).collect())
     }
 
     /// A clip by its name. Upper and lower case are the same where no name is equal.
@@ -66,18 +74,18 @@ impl Clips {
     /// The tracks of a clip; adds notes.
     ///
     /// # Errors
-    /// No clip of that name, with the names; numbers of another kind or number than a track has.
+    /// No clip of that name, with the names; numbers of another kind or number than a track has; more memory than may be taken.
     pub fn tracks(
         &self,
         name: &str,
         document: &Document,
         buffers: &Buffers,
         notes: &mut Vec<String>,
-    ) -> Result<Vec<Track>, Refusal> {
+    ) -> Result<Vec<Track>, Fault> {
         let clip = self.find(name)?;
         let samplers = clip.get("samplers").and_then(Value::as_array).map_or(&[][..], |all| &all[..]);
         let mut tracks = Vec::new();
-        let (mut pointers, mut held) = (0, 0);
+        let (mut pointers, mut held) = (0, Held::default());
         for channel in clip.get("channels").and_then(Value::as_array).into_iter().flatten() {
             let target = channel.get("target");
             let path = target.and_then(|target| target.get("path")).and_then(Value::as_str);
@@ -92,11 +100,7 @@ impl Clips {
             let node = node.ok_or_else(|| refused("for a node that the file has not"))?;
             let sampler = number(channel.get("sampler")).and_then(|index| samplers.get(index));
             let sampler = sampler.ok_or_else(|| refused("without a sampler"))?;
-            tracks.extend(track(document, buffers, node, path, sampler)?);
-            held += tracks.last().map_or(0, |track: &Track| track.times.len() + track.values.len());
-            if held > NUMBERS_LIMIT {
-                return Err((format!("more than {NUMBERS_LIMIT} numbers in a clip"), "a shorter clip"));
-            }
+            tracks.extend(track(document, buffers, node, path, sampler, &mut held)?);
         }
         if pointers > 0 {
             notes.push(counted(
@@ -106,9 +110,53 @@ impl Clips {
             ));
         }
         if tracks.is_empty() {
-            return Err((format!("the clip `{name}`, which moves nothing"), "a clip that moves nodes"));
+            return Err((format!("the clip `{name}`, which moves nothing"), "a clip that moves nodes").into());
         }
         Ok(tracks)
+    }
+}
+
+/// Names of which no two are equal: the first of equal ones stays, and the others have a number behind them.
+fn told_apart(names: Vec<String>) -> Vec<String> {
+    let mut taken: BTreeSet<String> = names.iter().cloned().collect();
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    let unique = |name: String| {
+        let count = counts.entry(name.clone()).or_default();
+        *count += 1;
+        if *count == 1 {
+            return name;
+        }
+        loop {
+            let numbered = format!("{name} ({count})");
+            if taken.insert(numbered.clone()) {
+                return numbered;
+            }
+            *count += 1;
+        }
+    };
+    names.into_iter().map(unique).collect()
+}
+
+/// Numbers of the tracks that were read, and the memory that their reader took \[byte\].
+#[derive(Default)]
+struct Held {
+    numbers: usize,
+    bytes: u64,
+}
+
+impl Held {
+    /// Counts the numbers of a track before they are read.
+    ///
+    /// # Errors
+    /// More numbers than a clip may have; more memory than may be taken.
+    fn add(&mut self, input: &Accessor<'_>, output: &Accessor<'_>) -> Result<(), Fault> {
+        let values = output.count().saturating_mul(output.dimensions().multiplicity());
+        self.numbers = self.numbers.saturating_add(input.count()).saturating_add(values);
+        if self.numbers > NUMBERS_LIMIT {
+            return Err((format!("more than {NUMBERS_LIMIT} numbers in a clip"), "a shorter clip").into());
+        }
+        self.bytes += TIME_BYTES * input.count() as u64 + VALUE_BYTES * values as u64;
+        memory::check(&[Need::new("the keys of the clip of the body", self.bytes, 1)]).map_err(Fault::Memory)
     }
 }
 
@@ -137,7 +185,8 @@ fn track(
     node: usize,
     path: Option<&str>,
     sampler: &Value,
-) -> Result<Option<Track>, Refusal> {
+    held: &mut Held,
+) -> Result<Option<Track>, Fault> {
     let (property, width) = match path {
         Some("translation") => (Property::Translation, 3),
         Some("rotation") => (Property::Rotation, 4),
@@ -150,7 +199,7 @@ fn track(
                 count => (Property::Weights, count),
             }
         }
-        _ => return Err(refused("with another path")),
+        _ => return Err(refused("with another path").into()),
     };
     let way = match sampler.get("interpolation") {
         None => Way::Linear,
@@ -158,7 +207,7 @@ fn track(
             Some("LINEAR") => Way::Linear,
             Some("STEP") => Way::Step,
             Some("CUBICSPLINE") => Way::Cubic,
-            _ => return Err(refused("with another interpolation")),
+            _ => return Err(refused("with another interpolation").into()),
         },
     };
     let accessor = |member: &str| {
@@ -166,17 +215,18 @@ fn track(
         found.ok_or_else(|| refused("without numbers"))
     };
     let (input, output) = (accessor("input")?, accessor("output")?);
+    held.add(&input, &output)?;
     let times = buffers.numbers::<1>(&input, &[DataType::F32], usize::MAX)?;
     let times: Vec<f64> = times.into_iter().map(|[time]| f64::from(time)).collect();
     if times.is_empty() || times.iter().any(|time| !time.is_finite()) || !times.is_sorted() {
-        return Err((format!("times of accessor {}", input.index()), "finite times [s] that rise"));
+        return Err((format!("times of accessor {}", input.index()), "finite times [s] that rise").into());
     }
     let values = numbers(buffers, &output, property)?;
     let wanted = times.len().saturating_mul(Track::parts(way)).saturating_mul(width);
     if values.len() != wanted {
         let found =
             format!("{} numbers in accessor {} for {} keys", values.len(), output.index(), times.len());
-        return Err((found, "a value for each key, three for each of a CUBICSPLINE"));
+        return Err((found, "a value for each key, three for each of a CUBICSPLINE").into());
     }
     Ok(Some(Track { node, property, way, times, values, width }))
 }
@@ -197,5 +247,23 @@ fn numbers(buffers: &Buffers, output: &Accessor<'_>, property: Property) -> Resu
     match values.iter().all(|value| value.is_finite()) {
         true => Ok(values),
         false => Err((format!("accessor {} with values that are none", output.index()), "finite numbers")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clips_of_one_name_are_told_apart() {
+        let clips = ["go", "", "go", "stop", "go (2)", "go", "clip 1"];
+        let written =
+            clips.map(|name| format!(r#"{{"name": "{name}", "extras": {{"teleports": [1]}}}}"#)).join(", ");
+        let clips = Clips::new(::gltf::json::deserialize::from_str(&format!("[{written}]")).ok());
+        let names = clips.names();
+        assert_eq!(names, ["go", "clip 1", "go (3)", "stop", "go (2)", "go (4)", "clip 1 (2)"]);
+        for (index, name) in names.iter().enumerate() {
+            assert!(std::ptr::eq(clips.find(name).unwrap(), &clips.0[index]), "{name}");
+        }
     }
 }

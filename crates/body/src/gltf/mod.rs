@@ -71,11 +71,12 @@ pub(crate) fn parse_moving(
     let tracks = file.clips.tracks(clip, &file.document, &file.buffers, notes)?;
     let mut rig = Rig::new(&nodes, tracks);
     rig.set_teleports(file.clips.teleports(clip)?);
-    memory::check(&[rig.need(&nodes.shown, file.buffers.limit)]).map_err(Fault::Memory)?;
+    memory::check(&[rig.keys(), rig.need(&nodes.shown, file.buffers.limit)]).map_err(Fault::Memory)?;
     let add = &mut |node: &Node<'_>, part: &Primitive<'_>, influences| {
         rig.add(node, part, influences, &file.buffers)
     };
     let mesh = file.mesh(&nodes, None, notes, add)?;
+    notes.extend(rig.unsearched());
     notes.extend(rig.inside_out().map(|(time, node)| {
         format!(
             "the clip turns what {node} carries inside out at {time:.2} s: hair stays outside of a body that is mirrored as \
@@ -97,6 +98,7 @@ pub(crate) fn parse_nodes(
     let tracks = file.clips.tracks(clip, &file.document, &file.buffers, notes)?;
     let mut rig = Rig::new(&nodes, tracks);
     rig.set_teleports(file.clips.teleports(clip)?);
+    notes.extend(rig.unsearched());
     Ok(rig)
 }
 

@@ -17,8 +17,9 @@ use crate::teleports::Teleports;
 
 /// Most keys at which a clip is searched for mirror images.
 const MOST_KEYS: usize = 4096;
-/// Most spans between keys that are searched for jumps.
-const MOST_SPANS: usize = 1024;
+/// Most spans between keys that are searched for jumps, and the most of them times tracks and nodes that are sampled in each.
+const MOST_SPANS: usize = 1 << 16;
+const MOST_SAMPLED: usize = 2 << 20;
 /// Share of one node from which on a vertex moves rigidly with it.
 const RIGID: f32 = 0.99;
 
@@ -102,6 +103,12 @@ impl Rig {
         &self.teleports
     }
 
+    /// Time of the first key \[s\].
+    pub fn begin(&self) -> f64 {
+        let first = self.tracks.iter().filter_map(|track| track.times.first().copied());
+        first.reduce(f64::min).unwrap_or_default()
+    }
+
     /// Time of the last key \[s\].
     pub fn end(&self) -> f64 {
         self.tracks.iter().filter_map(|track| track.times.last()).fold(0.0, |end, time| time.max(end))
@@ -110,6 +117,12 @@ impl Rig {
     /// Number of vertices.
     pub fn vertex_count(&self) -> usize {
         self.parts.iter().map(|part| part.base.len()).sum()
+    }
+
+    /// Memory that the keys of the clip take.
+    pub(super) fn keys(&self) -> Need {
+        let bytes = self.tracks.iter().map(|track| 8 * track.times.len() + 4 * track.values.len());
+        Need::new("the keys of the clip of the body", bytes.sum::<usize>() as u64, 1)
     }
 
     /// Memory that the parts of the shown nodes take at most; parts of more than `limit` vertices are refused later.
@@ -255,16 +268,56 @@ impl Rig {
 
     /// Spans \[s\] between two keys of a node that are far apart, the first ones of many.
     pub fn fast_spans(&self) -> Vec<[f64; 2]> {
+        let mut spans = self.all_fast_spans();
+        spans.truncate(self.most_spans());
+        spans
+    }
+
+    /// The note on spans that are too many to be searched for jumps.
+    pub(super) fn unsearched(&self) -> Option<String> {
+        let (spans, most) = (self.all_fast_spans(), self.most_spans());
+        let [from, _] = spans.get(most)?;
+        Some(format!(
+            "{} of {} spans between keys far apart are not searched for jumps, those from {from:.2} s on: marks in `teleports` \
+             carry hair over jumps there",
+            spans.len() - most,
+            spans.len()
+        ))
+    }
+
+    /// The number of spans that are searched for jumps.
+    fn most_spans(&self) -> usize {
+        (MOST_SAMPLED / (self.tracks.len() + self.rest.len()).max(1)).clamp(1, MOST_SPANS)
+    }
+
+    fn all_fast_spans(&self) -> Vec<[f64; 2]> {
         let mut spans: Vec<[f64; 2]> = self.tracks.iter().flat_map(Track::fast_spans).collect();
         spans.sort_by(|one, other| one[0].total_cmp(&other[0]).then(one[1].total_cmp(&other[1])));
         spans.dedup();
-        spans.truncate(MOST_SPANS);
         spans
     }
 
     /// The number of the first node of a name.
     pub fn node(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|own| own.as_deref() == Some(name))
+    }
+
+    /// True where the clip has keys of a node or of one above it.
+    pub fn moves(&self, node: usize) -> bool {
+        let above =
+            |node: usize| self.order.iter().find(|(own, _)| *own == node).and_then(|(_, above)| *above);
+        std::iter::successors(Some(node), |node| above(*node)).any(|node| self.has_keys(node))
+    }
+
+    /// True where the clip has keys of the transform of a node.
+    fn has_keys(&self, node: usize) -> bool {
+        self.tracks.iter().any(|track| track.node == node && track.property != Property::Weights)
+    }
+
+    /// The names of nodes that have keys.
+    pub fn moved_names(&self) -> impl Iterator<Item = &str> {
+        let names = self.names.iter().enumerate().filter(|(node, _)| self.has_keys(*node));
+        names.filter_map(|(_, name)| name.as_deref())
     }
 
     /// The names of nodes.

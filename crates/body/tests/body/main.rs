@@ -14,6 +14,7 @@ mod obj_looks;
 mod painted;
 mod painted_file;
 mod posed_skin;
+mod recorded;
 mod sample;
 mod scans;
 mod shapes;

@@ -140,3 +140,24 @@ fn files_of_one_topology_are_a_mesh_in_motion() {
     let absent = Mesh::load_sequence(&folder.path().join("run%02d.obj"), 2.0).unwrap_err().to_string();
     assert!(absent.contains("no such .obj file"), "{absent}");
 }
+
+#[test]
+fn the_looks_of_a_sequence_are_those_of_its_first_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |number: usize, library: &str| {
+        let text = format!("mtllib {library}\nusemtl skin\n{CUBE_OBJ}");
+        std::fs::write(folder.path().join(format!("walk{number}.obj")), text).unwrap();
+    };
+    write(1, "skin.mtl");
+    (2..4).for_each(|number| write(number, "other.mtl"));
+    std::fs::write(folder.path().join("skin.mtl"), "newmtl skin\nKd 0.5 0.2 0.1\nmap_d hole.png\n").unwrap();
+    let (mesh, _, notes) = Mesh::load_sequence_noted(folder.path(), 24.0).unwrap();
+    let material = &mesh.materials.as_ref().unwrap().list[0];
+    assert_eq!(material.name.as_deref(), Some("skin"));
+    let [note] = &notes[..] else { panic!("one note: {notes:?}") };
+    assert!(note.contains("the mask `hole.png` of `skin` is not read"), "{note}");
+    let bad = CUBE_OBJ.replacen("v ", "v 1e9 ", 1);
+    std::fs::write(folder.path().join("walk2.obj"), bad).unwrap();
+    let error = Mesh::load_sequence(folder.path(), 24.0).unwrap_err().to_string();
+    assert!(error.contains("walk2.obj") && error.contains("finite coordinates"), "{error}");
+}

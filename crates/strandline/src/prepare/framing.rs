@@ -1,26 +1,35 @@
 //! The box around hair and body, and the motion of the head in it.
 
+use std::path::PathBuf;
+
 use glam::Vec3;
 
 use crate::{
     Error, HeadMotion, Scene,
     body::{Aabb, Mesh, RecordedMotion},
     groom::Guides,
-    scene::{TeleportSection, solid_motion::solid_motions},
+    scene::{MotionName, TeleportSection, solid_motion::solid_motions},
 };
 
-/// Motion of the head: about the scene's pivot, the body's, or a low point in the box around hair and body.
-pub fn head_motion(scene: &Scene, pivot: Option<Vec3>, bounds: Aabb) -> Result<HeadMotion, Error> {
+/// Motion of the head: about the scene's pivot, the body's, or a low point in the box around hair and body; with notes.
+pub fn head_motion(
+    scene: &Scene,
+    pivot: Option<Vec3>,
+    bounds: Aabb,
+) -> Result<(HeadMotion, Vec<String>), Error> {
     let pivot = scene.motion.pivot.or(pivot).unwrap_or_else(|| low_center(bounds));
     let section = &scene.motion;
-    let load = |file| {
-        let clip = section.clip.as_deref();
-        let motion = RecordedMotion::load(&scene.path(file), &section.joint, clip, f64::from(section.scale))?;
+    let mut notes = Vec::new();
+    let load = |file: &PathBuf| {
+        let (clip, scale) = (section.clip.as_deref(), f64::from(section.scale));
+        let (motion, odd) = RecordedMotion::load_noted(&scene.path(file), &section.joint, clip, scale)?;
+        notes.extend(odd);
         motion.with_teleports(&TeleportSection::times(&section.teleports))
     };
-    let recorded = section.file.as_ref().map(|file| load(file)).transpose()?;
+    let recorded = section.file.as_ref().map(load).transpose()?;
     let solids = solid_motions(&scene.colliders, section.interpolation)?;
-    Ok(HeadMotion::new(section, pivot)?.with_recorded(recorded).with_solids(solids))
+    let head = HeadMotion::new(section, pivot)?.with_recorded(recorded).with_solids(solids);
+    Ok((head, if section.name == MotionName::File { notes } else { Vec::new() }))
 }
 
 /// The box around strands and body \[m\].

@@ -64,6 +64,7 @@ pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
             let moving: Vec<usize> = (0..parts.len()).filter(|part| parts[*part].is_some()).collect();
             let skin = moving::with_parts(scene, skin, parts.into_iter(), body)?;
             notes.extend(moving::open_loops(&skin, &moving));
+            notes.extend(moving::unseen_motions(scene, &skin, &moving));
             Some(skin)
         }
         _ => None,
@@ -211,7 +212,7 @@ fn start(
     skin: Option<&SkinMotion>,
     colliders: &[Collider],
 ) -> Result<Start, Error> {
-    let head = head_motion(scene, pivot, bounds(strands, mesh.filter(|_| scene.body.visible)))?;
+    let (head, _) = head_motion(scene, pivot, bounds(strands, mesh.filter(|_| scene.body.visible)))?;
     let head = head.with_body(skin.cloned()).with_neck(mesh.and_then(|mesh| mesh.neck));
     let time = if scene.groom.pose.is_some() { 0.0 } else { scene.film.start };
     let (origin, _) = about(head.origin_at(time), colliders.to_vec());

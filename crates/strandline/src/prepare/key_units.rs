@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::{
     Scene,
-    body::Interpolation,
+    body::{Interpolation, RecordedMotion},
     scene::{KeyframeSection, MotionName},
 };
 
@@ -53,6 +53,18 @@ pub(super) fn notes(scene: &Scene) -> Vec<String> {
     });
     notes.extend(of_keys("camera.keyframes", ("the camera", OF_OTHERS), &views.collect::<Vec<_>>()));
     notes
+}
+
+/// The note on the motion of a file that is probably in centimetres, where the head follows it.
+pub(super) fn of_file(scene: &Scene, recorded: Option<&RecordedMotion>) -> Option<String> {
+    let recorded = recorded.filter(|_| scene.motion.name == MotionName::File);
+    let (way, seconds) = recorded.and_then(RecordedMotion::far_way)?;
+    let (way, seconds) = ((1e3 * way).round() / 1e3, (1e3 * seconds).round() / 1e3);
+    Some(format!(
+        "motion.file moves the head by {way} m in {seconds} s, again and again: motion.scale is {} m, and of a file in \
+         centimetres it is 0.01 m",
+        scene.motion.scale
+    ))
 }
 
 /// Values of poses, given the way from pose to pose where one does not name its own.

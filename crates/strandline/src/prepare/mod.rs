@@ -36,6 +36,7 @@ mod sources;
 mod start;
 mod unbrushed;
 mod units;
+mod unmoved;
 mod wrap;
 
 #[cfg(test)]
@@ -205,8 +206,13 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
     let (mesh, hidden) =
         if scene.body.visible { (mesh, None) } else { (None, mesh.filter(|_| skin.is_some())) };
     let bounds = bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh.as_ref());
-    let head = head_motion(&scene, pivot, bounds)?.with_body(skin).with_neck(neck);
+    let (head, odd) = head_motion(&scene, pivot, bounds)?;
+    notes.extend(odd);
+    let head = head.with_body(skin).with_neck(neck);
     notes.extend(moving::open_loop("motion", head.gap_of_loop()));
+    let unseen = |(playback, span)| moving::unseen(&scene, "motion", playback, span);
+    notes.extend(key_units::of_file(&scene, head.recorded()));
+    notes.extend(head.played().and_then(unseen));
     Ok(Prepared { guides, bound, tags, mesh, hidden, colliders, head, pose, bounds, scene, placement, notes })
 }
 

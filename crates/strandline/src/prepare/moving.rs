@@ -61,6 +61,31 @@ pub(super) fn with_parts(
     Ok(skin)
 }
 
+/// A note for each motion that plays outside of the film. The parts of these numbers move by themselves.
+pub(super) fn unseen_motions(scene: &Scene, skin: &SkinMotion, parts: &[usize]) -> Vec<String> {
+    let keys =
+        std::iter::once("body".to_owned()).chain(parts.iter().map(|part| format!("body.parts[{part}]")));
+    keys.zip(skin.played())
+        .filter_map(|(key, (playback, span))| unseen(scene, &key, playback, span))
+        .collect()
+}
+
+/// The note on a motion of a section whose samples, from the first to the last \[s\], all lie before the film or after it.
+pub(super) fn unseen(scene: &Scene, key: &str, playback: Playback, span: [f64; 2]) -> Option<String> {
+    let film = &scene.film;
+    let shown = [film.start, film.start + f64::from(film.frames) / f64::from(film.frames_per_second)];
+    let rounded = |time: f64| (1e3 * time).round() / 1e3;
+    let [[from, until], [begin, end]] = [playback.played(shown), span].map(|span| span.map(rounded));
+    let first = if playback.speed < 0.0 { span[1] } else { span[0] };
+    playback.misses(shown, span).then(|| {
+        format!(
+            "{key}.start: the motion lasts from {begin} to {end} s, the film shows {from} to {until} s of it, where it stands \
+             still: with {key}.start = {} they begin together",
+            rounded(first - playback.speed * shown[0])
+        )
+    })
+}
+
 /// A note for each motion that begins again and ends elsewhere than it begins, without a mark there. The parts of these
 /// numbers move by themselves.
 pub(super) fn open_loops(skin: &SkinMotion, parts: &[usize]) -> Vec<String> {

@@ -1,6 +1,6 @@
 //! First stage of loading: grooms, meshes and surroundings, each in its own units and axes.
 
-use super::loading::Loading;
+use super::{loading::Loading, unmoved};
 use crate::{Error, body::VertexMotion};
 
 /// Reads the grooms, the meshes and the surroundings that a scene names.
@@ -33,6 +33,7 @@ pub(super) fn read(loading: &mut Loading) -> Result<(), Error> {
     loading.further_grooms = parts.collect::<Result<_, _>>()?;
     let parts = (0..body.parts.len()).map(&mut mesh).collect::<Result<Vec<_>, _>>()?;
     (loading.further_meshes, loading.part_motions) = parts.into_iter().unzip();
+    noted.extend(unmoved::notes(sources, scene, loading.motion.is_some()));
     if let (true, None, Some(mesh)) =
         (loading.part_motions.iter().any(Option::is_some), &loading.motion, &loading.mesh)
     {

@@ -154,8 +154,9 @@ impl Sources {
                     let expected = "either the frames of `body.file` or `body.vertices`";
                     return Err(SettingError::new("body.vertices", found, expected).into());
                 }
-                let (mesh, motion) = Mesh::load_sequence(&path, body.frames_per_second)?;
-                return Ok((mesh, Some(motion), Vec::new()));
+                let (mesh, motion, notes) = Mesh::load_sequence_noted(&path, body.frames_per_second)?;
+                let noted = |note: String| format!("{}: {note}", name.display());
+                return Ok((mesh, Some(motion), notes.into_iter().map(noted).collect()));
             }
             let (mesh, notes) = self.mesh_noted(scene, name)?;
             let file = (!self.meshes.contains_key(name)).then_some(&*path);

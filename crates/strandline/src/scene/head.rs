@@ -90,6 +90,11 @@ impl HeadMotion {
         self.recorded.as_ref()
     }
 
+    /// How the motion of a file is played, and the times \[s\] of its first and its last sample, where the head follows it.
+    pub(crate) fn played(&self) -> Option<(Playback, [f64; 2])> {
+        self.recorded.as_ref().filter(|_| self.is_recorded).map(RecordedMotion::played)
+    }
+
     /// Way \[m\] from the end of the motion of a file that begins again to its beginning, where the head follows it.
     pub(crate) fn gap_of_loop(&self) -> f32 {
         let recorded = self.recorded.as_ref().filter(|_| self.is_recorded);

@@ -15,6 +15,9 @@ use crate::{
 
 /// Most jumps that are listed: hair in a window may run for days.
 const MOST_LISTED: usize = 10_000;
+/// Most jumps of different ways or angles that are noted, and the numbers of jumps that are noted too.
+const MOST_NOTED: usize = 8;
+const COUNTS: [usize; 3] = [100, 1_000, MOST_LISTED];
 
 impl Simulation {
     /// Carries the hair to where a jump leads within these drives, those of the steps from `first` on, in a span of time
@@ -40,13 +43,24 @@ impl Simulation {
         let found = (0..).zip(before.zip(&*drives)).find_map(of_step).or_else(of_span);
         let Some(found) = found else { return Ok(()) };
         self.engine.carry(&end)?;
-        self.engine.notes.push(found.what.clone());
+        self.note_jump(&found.what);
         if self.jumps.len() < MOST_LISTED {
             self.jumps.push(found);
+            if COUNTS.contains(&self.jumps.len()) {
+                self.engine.notes.push(format!("the body has jumped {} times", self.jumps.len()));
+            }
         }
         self.bodies = [end.clone(), end.clone()];
         drives.iter_mut().for_each(|drive| drive.body = end.clone());
         Ok(())
+    }
+
+    /// Notes a jump, unless one like it or too many were noted before.
+    fn note_jump(&mut self, what: &str) {
+        if self.told_jumps.len() < MOST_NOTED && !self.told_jumps.iter().any(|told| told == what) {
+            self.told_jumps.push(what.to_owned());
+            self.engine.notes.push(what.to_owned());
+        }
     }
 
     /// Notes the first time at which vertices of the body have no place.

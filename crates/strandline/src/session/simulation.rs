@@ -52,6 +52,8 @@ pub(crate) struct Simulation {
     pub hairs: Option<f32>,
     /// The first jumps of the body.
     pub jumps: Vec<Jump>,
+    /// Jumps that notes have told of.
+    pub(super) told_jumps: Vec<String>,
     /// True where a note has told of vertices at no place.
     pub(super) told_held: bool,
     /// Threads of its own beside those that draw, which else keep it waiting for a whole picture.
@@ -74,6 +76,7 @@ impl Simulation {
             skin: SkinCarrier::default(),
             hairs: None,
             jumps: Vec::new(),
+            told_jumps: Vec::new(),
             told_held: false,
             threads: None,
         }

@@ -1,6 +1,7 @@
 //! Bodies that move by themselves: clips, vertices in memory and files of vertices.
 #![allow(clippy::disallowed_methods)] // compared values may be rounded
 
+mod misplayed;
 mod solids;
 mod told;
 

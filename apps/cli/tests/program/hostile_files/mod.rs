@@ -210,7 +210,7 @@ fn scenes_of_many_sections() {
 }
 
 /// A zip of deflated arrays: their names, headers, and bytes that are repeated.
-fn cache(arrays: &[(&str, &str, &[u8], usize)]) -> Vec<u8> {
+pub fn cache(arrays: &[(&str, &str, &[u8], usize)]) -> Vec<u8> {
     let (mut zip, mut directory) = (Vec::new(), Vec::new());
     let short = |number: usize| (number as u16).to_le_bytes();
     let long = |number: usize| (number as u32).to_le_bytes();
@@ -239,7 +239,7 @@ fn cache(arrays: &[(&str, &str, &[u8], usize)]) -> Vec<u8> {
     [zip, directory, end, places, vec![0; 2]].concat()
 }
 
-const ROW: &str = "'fortran_order': False, 'shape'";
+pub const ROW: &str = "'fortran_order': False, 'shape'";
 
 #[test]
 fn caches_that_unpack_to_much() {
