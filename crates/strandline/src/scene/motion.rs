@@ -50,7 +50,7 @@ settings! {
 settings! {
     /// Motion of the head.
     pub struct MotionSection {
-        /// The motion.
+        /// The motion; without a name that of a body that moves by itself is "still".
         name: MotionName = MotionName::default();
         /// Point about which the head turns, head space; without one it is the mannequin's neck, or a
         /// point low in the body's or the groom's box.

@@ -96,6 +96,28 @@ fn a_loop_that_does_not_close_is_told() {
     assert!(!marked.contains("body.loop"), "{marked}");
 }
 
+/// Motion of the head that a scene file without `motion.name` gets beside its body.
+#[test]
+fn a_body_that_moves_is_not_shaken_unless_the_scene_says_so() {
+    let name = |body: &str, motion: &str| {
+        let text = format!(
+            "[style]\nstyle = \"bob\"\nstrand_count = 40\n[groom]\nbound = 0\n[body]\nspacing = 0.02\nfile = '{}'\n{body}\n{motion}",
+            bust().display()
+        );
+        Prepared::new(&Scene::parse(&text, "a test").unwrap()).unwrap().scene.motion.name
+    };
+    assert_eq!(name("clip = \"smile\"", ""), MotionName::Still);
+    assert_eq!(name("clip = \"smile\"", "[motion]\nname = \"shake\""), MotionName::Shake);
+    let part = format!("[[body.parts]]\nfile = '{}'\nclip = \"smile\"", bust().display());
+    assert_eq!(name("", &part), MotionName::Still, "a part that moves");
+    assert_eq!(name("", ""), MotionName::Shake, "a body that rests");
+    let (mut scene, sources) = aside();
+    scene.motion.name = MotionName::Shake;
+    assert_eq!(Prepared::from_sources(&scene, &sources).unwrap().scene.motion.name, MotionName::Still);
+    scene.set_motion(MotionName::Shake);
+    assert_eq!(Prepared::from_sources(&scene, &sources).unwrap().scene.motion.name, MotionName::Shake);
+}
+
 /// A built-in bust that drives evenly: frames of 1/24 s hold two or three steps of 1/60 s, those of 1/50 s one or two.
 #[test]
 fn an_even_motion_slower_than_a_jump_is_none_at_any_frame_rate() {
