@@ -39,7 +39,9 @@ pub fn show(app: &mut App, ui: &mut Ui) {
 fn names(scene: &mut Scene, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
         let tip = format!("{}\ndefault {}", about(&MotionSection::ROWS.name), MotionName::default().name());
-        for name in MotionName::ALL {
+        // Without a file no head can follow one.
+        let has_file = scene.motion.file.is_some() || scene.motion.name == MotionName::File;
+        for name in MotionName::ALL.into_iter().filter(|name| has_file || *name != MotionName::File) {
             let chosen = ui.selectable_label(scene.motion.name == name, name.name());
             if chosen.on_hover_text(&tip).clicked() {
                 scene.set_motion(name);
