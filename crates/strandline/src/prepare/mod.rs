@@ -206,7 +206,7 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
         if scene.body.visible { (mesh, None) } else { (None, mesh.filter(|_| skin.is_some())) };
     let bounds = bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh.as_ref());
     let head = head_motion(&scene, pivot, bounds)?.with_body(skin).with_neck(neck);
-    notes.extend(moving::open_loop("motion", head.gap_of_loop()));
+    notes.extend(moving::open_loop("motion", head.gap_of_loop(f64::from(scene.simulation.time_step))));
     Ok(Prepared { guides, bound, tags, mesh, hidden, colliders, head, pose, bounds, scene, placement, notes })
 }
 

@@ -318,7 +318,8 @@ impl<E: Executor> Session<E> {
         let is_keyed = self.scene.colliders.iter().any(|solid| !solid.keyframes().is_empty());
         let other_way = self.direction.interpolation() != self.scene.motion.interpolation;
         let solids = (is_keyed && other_way).then(|| SOLIDS_STAY.to_owned());
-        let open = open_loop("motion", self.direction.head.gap_of_loop());
+        let step = f64::from(self.settings_asked().time_step);
+        let open = open_loop("motion", self.direction.head.gap_of_loop(step));
         neck.into_iter().chain(open).chain(solids).collect()
     }
 
