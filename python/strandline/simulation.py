@@ -94,9 +94,6 @@ class Simulation:
         if not isinstance(body, Body | str | os.PathLike | None):
             raise Error(f"body is a {type(body).__name__}, expected a Body or a path: Body(vertices, faces)", "value")
         self._body = body if isinstance(body, Body) else None
-        moving = self._body is not None and self._body.motion is not None
-        if motion is None and moving:
-            motion = Motion.still()
         held: Groom | None = None
         changes: dict[str, Any] = dict(sections)
         grooms: list[Any] = []

@@ -48,8 +48,8 @@ impl Inputs {
         }
         if let Some(name) = &self.clip {
             scene.body.clip = Some(name.clone());
-            // A built-in motion of the scene would turn the whole body on top of it.
-            scene.motion.name = MotionName::Still;
+            // A motion that the scene names would turn the whole body on top of it.
+            scene.set_motion(MotionName::Still);
         }
         if let Some(hair) = self.hair {
             if scene.simulation.strands.method == StrandMethod::Constrain {
@@ -101,7 +101,7 @@ impl Inputs {
             scene.film.frames_per_second = rate;
         }
         if let Some(name) = self.motion {
-            scene.motion.name = name;
+            scene.set_motion(name);
             // It begins at its beginning.
             scene.film.start = 0.0;
         }

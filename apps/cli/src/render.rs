@@ -114,7 +114,7 @@ fn turn(scene: &mut Scene, frames: u32, inputs: &Inputs) {
         scene.film.frames = frames;
     }
     if inputs.motion.is_none() {
-        scene.motion.name = MotionName::Still;
+        scene.set_motion(MotionName::Still);
     }
 }
 

@@ -77,6 +77,11 @@ impl Leaps {
         pairs.filter(|[one, other]| one[1] == other[0])
     }
 
+    /// True where a jump ends with the motion, at `end` \[s\]: it goes on to the beginning of the next round.
+    pub fn are_at_end(&self, end: f64) -> bool {
+        self.0.last().is_some_and(|[_, to]| *to >= end)
+    }
+
     /// The time of the motion \[s\] that counts at a time of it: the beginning of a span within it.
     pub fn held(&self, time: f64) -> f64 {
         let next = self.0.partition_point(|[from, _]| *from < time);
@@ -135,6 +140,7 @@ mod tests {
             assert_eq!(leaps.held(time), held);
         }
         assert_eq!([0.2, 0.249, 0.25, 9.0].map(|time| leaps.passed(time, 0.0)), [0, 0, 1, 1]);
+        assert!(leaps.are_at_end(0.25) && !leaps.are_at_end(0.3));
         assert_eq!([leaps.passed(0.0, 3.0), leaps.passed(0.3, -1.0)], [3, 0]);
     }
 }

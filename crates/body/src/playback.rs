@@ -43,6 +43,11 @@ impl Playback {
         begin < end && from < until && (until <= begin || from >= end)
     }
 
+    /// True where a motion that ends at `end` \[s\] begins again at some time.
+    pub(crate) fn is_round(&self, end: f64) -> bool {
+        self.is_loop && self.speed != 0.0 && end > 0.0
+    }
+
     /// Number of times that the motion has begun again.
     pub(crate) fn rounds(&self, time: f64, end: f64) -> f64 {
         let is_round = self.is_loop && end > 0.0;
@@ -106,6 +111,10 @@ mod tests {
         assert_eq!([0.0, 3.0, 1e300].map(|time| playback.time(time, 2.0)), [0.5; 3]);
         assert_eq!(playback.rounds(1e9, 2.0), 0.0);
         let backward = Playback { start: 0.0, speed: -1.0, is_loop: true };
+        assert_eq!(
+            [playback.is_round(2.0), backward.is_round(2.0), backward.is_round(0.0)],
+            [false, true, false]
+        );
         assert_eq!([0.5, 2.0, 2.5].map(|time| backward.time(time, 2.0)), [1.5, 0.0, 1.5]);
         assert_eq!([0.5, 2.5].map(|time| backward.rounds(time, 2.0)), [-1.0, -2.0]);
         let held = Playback { is_loop: false, ..backward };

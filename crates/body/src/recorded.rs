@@ -204,16 +204,20 @@ impl RecordedMotion {
     }
 
     /// Way \[m\] of a head of 0.1 m about a pivot from the end of the motion to its beginning; 0 where it does not begin again,
-    /// and where its beginning is marked as a jump.
-    pub fn gap_of_loop(&self) -> f32 {
+    /// and where hair is carried over the gap: its beginning or its end is marked, or it is a jump within a step of `step`
+    /// \[s\].
+    pub fn gap_of_loop(&self, step: f64) -> f32 {
         let end = self.end();
-        if !self.playback.is_loop || end <= 0.0 || self.teleports.times().contains(&0.0) {
+        let is_marked = self.teleports.are_at_ends(end) || self.leaps.are_at_end(end);
+        if !self.playback.is_round(end) || is_marked {
             return 0.0;
         }
         let [(first, start), (last, place)] = [0.0, end].map(|time| self.joint(time));
-        let turn = (last * first.conjugate()).xyz().length().min(1.0);
-        let gap = (self.scale * (place - start).length() + 2.0 * RADIUS * turn) as f32;
-        if gap.is_finite() { gap } else { 0.0 }
+        let half = (last * first.conjugate()).xyz().length().min(1.0);
+        let way = self.scale * (place - start).length();
+        let leap = Leap { way: way as f32, turn: 2.0 * math::asin(half as f32) };
+        let gap = (way + 2.0 * RADIUS * half) as f32;
+        if gap.is_finite() && !leap.is_jump(step) { gap } else { 0.0 }
     }
 
     /// Rotation and place of the joint in the world, units of the file.
@@ -303,10 +307,17 @@ mod tests {
             assert_eq!(jumps, expected, "{time}");
         }
         // 10 cm, and 40 degrees of a head of 10 cm.
-        assert!((motion.clone().with_playback(rounds).gap_of_loop() - 0.1684).abs() < 1e-4);
-        assert_eq!(motion.gap_of_loop(), 0.0);
-        let closed = motion.clone().with_teleports(&[0.0]).unwrap().with_playback(rounds);
-        assert_eq!(closed.gap_of_loop(), 0.0, "the beginning is marked");
+        let gap =
+            |motion: &RecordedMotion, playback| motion.clone().with_playback(playback).gap_of_loop(0.01);
+        assert!((gap(&motion, rounds) - 0.1684).abs() < 1e-4);
+        assert_eq!(motion.gap_of_loop(0.01), 0.0);
+        assert_eq!(gap(&motion, Playback { speed: 0.0, ..rounds }), 0.0, "it stands still");
+        for mark in [0.0, 1.0] {
+            let closed = motion.clone().with_teleports(&[mark]).unwrap();
+            assert_eq!(gap(&closed, rounds), 0.0, "a mark at {mark}");
+        }
+        let far = RecordedMotion::load(&path, "Head", None, 0.1).unwrap();
+        assert_eq!(gap(&far, rounds), 0.0, "1 m in a step is a jump by itself");
         let absent = RecordedMotion::load(&path, "Hips", None, 1.0).unwrap_err().to_string();
         assert!(absent.contains("no joint `Hips` among `Head`") && !absent.contains("export"), "{absent}");
     }

@@ -1,5 +1,7 @@
 //! A body whose vertices move by themselves: where its vertices are at a time, and the body frames that follow.
 
+mod gaps;
+
 use std::ops::Range;
 use std::sync::{Arc, Mutex};
 
@@ -238,22 +240,6 @@ impl SkinMotion {
         let of_part = |part: &Moving| (part.playback, [part.motion.begin(), part.motion.end()]);
         self.parts.iter().map(of_part).collect()
     }
-
-    /// For each motion, in the order in which they were added, the greatest distance \[m\] between where vertices are at its
-    /// end and where they are at its beginning; 0 for one that does not begin again, and for one whose beginning is marked as
-    /// a jump.
-    pub fn gaps_of_loops(&self) -> Vec<f32> {
-        let gap = |part: &Moving| {
-            let end = part.motion.end();
-            if !part.playback.is_loop || end <= 0.0 || part.motion.teleports().contains(&0.0) {
-                return 0.0;
-            }
-            let [from, to] = [0.0, end].map(|time| part.motion.positions(time));
-            let apart = from.iter().zip(&to).map(|(from, to)| part.scale * from.distance(*to));
-            apart.filter(|apart| apart.is_finite()).fold(0.0, f32::max)
-        };
-        self.parts.iter().map(gap).collect()
-    }
 }
 
 #[cfg(test)]
@@ -359,9 +345,9 @@ mod tests {
         assert!(!both.frame(0.2).jumps_to(&both.frame(0.3)));
         let jumping = marked(part.clone().with_teleports(&[0.0]).unwrap());
         assert!(jumping.frame(0.2).jumps_to(&jumping.frame(0.3)));
-        let [of_body, of_part] = both.gaps_of_loops()[..] else { panic!("two motions") };
+        let [of_body, of_part] = both.gaps_of_loops(0.01)[..] else { panic!("two motions") };
         assert!(of_body == 0.0 && (of_part - 0.2).abs() < 1e-6);
-        assert_eq!((jumping.gaps_of_loops(), body.gaps_of_loops()), (vec![0.0; 2], vec![0.0]));
+        assert_eq!((jumping.gaps_of_loops(0.01), body.gaps_of_loops(0.01)), (vec![0.0; 2], vec![0.0]));
         let refused = |first| body.clone().with_part(first, part.clone(), playback, (1.0, turn)).unwrap_err();
         assert!(refused(4).to_string().contains("4..6, beside 0..5"));
         assert!(refused(7).to_string().contains("2, for a mesh of 8"));

@@ -33,6 +33,11 @@ impl Teleports {
         Some(time >= *mark)
     }
 
+    /// True where a motion that ends at `end` \[s\] begins again behind a mark: one at its beginning, its end or beyond them.
+    pub fn are_at_ends(&self, end: f64) -> bool {
+        self.0.first().is_some_and(|mark| *mark <= 0.0) || self.0.last().is_some_and(|mark| *mark >= end)
+    }
+
     /// Number of marks up to a time; of a motion that has gone round `rounds` times those of all rounds.
     pub fn passed(&self, time: f64, rounds: f64) -> i64 {
         let rounds = if rounds.is_finite() { rounds as i64 } else { 0 };
@@ -61,6 +66,8 @@ mod tests {
         }
         assert_eq!([0.0, 1.0, 2.0, 9.0].map(|time| marks.passed(time, 0.0)), [0, 1, 1, 2]);
         assert_eq!([marks.passed(0.0, 3.0), marks.passed(1.0, -1.0)], [6, -1]);
+        assert_eq!([3.0, 2.5, 2.0].map(|end| marks.are_at_ends(end)), [false, true, true]);
+        assert!(Teleports::new(&[0.0]).unwrap().are_at_ends(9.0) && !Teleports::default().are_at_ends(9.0));
         let error = Teleports::new(&[f64::NAN]).unwrap_err().to_string();
         assert!(error.contains("the time of a teleport"), "{error}");
     }

@@ -2,7 +2,7 @@
 
 use eframe::egui::{DragValue, Ui};
 use strandline::{
-    Change,
+    Change, Scene,
     scene::{GroomSection, KeyframeSection, MotionName, MotionSection, WindSection},
     settings::Group,
 };
@@ -16,7 +16,7 @@ use crate::{
 
 pub fn show(app: &mut App, ui: &mut Ui) {
     let before = app.scene.motion.clone();
-    names(&mut app.scene.motion, ui);
+    names(&mut app.scene, ui);
     let (motion, base) = (&mut app.scene.motion, &app.base.motion);
     let row = &MotionSection::ROWS.rotation;
     slide(ui, (&mut motion.rotation.y, base.rotation.y), row, "turn");
@@ -36,13 +36,16 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     items::colliders(app, ui);
 }
 
-fn names(motion: &mut MotionSection, ui: &mut Ui) {
+fn names(scene: &mut Scene, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
         let tip = format!("{}\ndefault {}", about(&MotionSection::ROWS.name), MotionName::default().name());
-        for name in MotionName::ALL {
-            let chosen = ui.selectable_label(motion.name == name, name.name());
+        // Without a file no head can follow one.
+        let has_file = scene.motion.file.is_some() || scene.motion.name == MotionName::File;
+        for name in MotionName::ALL.into_iter().filter(|name| has_file || *name != MotionName::File) {
+            let chosen = ui.selectable_label(scene.motion.name == name, name.name());
             if chosen.on_hover_text(&tip).clicked() {
-                motion.name = name;
+                scene.set_motion(name);
+                let motion = &mut scene.motion;
                 if name == MotionName::Keyframes && motion.keyframes.is_empty() {
                     // A look to the left and back.
                     motion.keyframes = [0.0, 40.0, 0.0].iter().enumerate().map(key).collect();

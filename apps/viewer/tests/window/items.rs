@@ -102,4 +102,5 @@ fn clips_of_a_body_and_of_its_parts_are_chosen_from_those_of_their_files() {
     settles(&mut window);
     assert_eq!(window.app().seen().body.clip.as_ref(), Some(&names[0]));
     assert_eq!(window.app().seen().body.parts[0].clip, None, "that of the part stays");
+    assert_eq!(window.app().seen().motion.name, strandline::scene::MotionName::Still, "nobody chose a shake");
 }

@@ -32,6 +32,7 @@ fn buttons_and_sliders_of_the_panels_change_the_picture() {
 #[test]
 fn a_motion_that_is_chosen_turns_the_head() {
     let mut window = Window::still();
+    assert!(!window.has_label("file"), "no head follows a file that the scene does not name");
     let before = window.picture();
     window.click("nod");
     assert_eq!(window.app().seen().motion.name, strandline::scene::MotionName::Nod);

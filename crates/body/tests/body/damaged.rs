@@ -82,7 +82,7 @@ pub fn rides(mesh: &Mesh, motion: VertexMotion, random: &mut Random) {
             let found = last.check(Some(2), Some(places.len()));
             assert!(found.is_ok(), "{found:?} at {time} of {playback:?}");
         }
-        assert!(body.gaps_of_loops().iter().all(|gap| gap.is_finite()), "{playback:?}");
+        assert!(body.gaps_of_loops(0.01).iter().all(|gap| gap.is_finite()), "{playback:?}");
     }
 }
 

@@ -22,11 +22,10 @@ pub fn changes(from: &Scene, to: &Scene) -> Option<Vec<Change>> {
     let PictureSettings { width, height, .. } = from.picture;
     near.picture = PictureSettings { width, height, ..to.picture };
     let sized = Scene { picture: near.picture, ..to.clone() };
-    // Maps, groups, locks and the file of a motion are taken in when a scene is loaded.
+    // Maps, groups, locks, the file of a motion, its pivot and the ways of solids are taken in when a scene is loaded.
     let loaded =
         |look: &Look| (look.color_map.clone(), look.width_map.clone(), look.group.clone(), look.coat.gather);
-    let is_near =
-        near == sized && loaded(&from.look) == loaded(&to.look) && from.motion.file == to.motion.file;
+    let is_near = near == sized && loaded(&from.look) == loaded(&to.look) && follows(from, to);
     is_near.then(|| {
         let mut changes = Vec::new();
         let mut add = |differs: bool, change: &dyn Fn() -> Change| {
@@ -48,6 +47,15 @@ pub fn changes(from: &Scene, to: &Scene) -> Option<Vec<Change>> {
         add(from.picture != picture, &|| Change::Picture(picture));
         changes
     })
+}
+
+/// True where the head and the solids of one scene, as loaded, can move as another scene says.
+fn follows(from: &Scene, to: &Scene) -> bool {
+    let (motion, other) = (&from.motion, &to.motion);
+    let solids_stay = from.colliders.iter().all(|solid| solid.keyframes().is_empty());
+    motion.differs_in_file(other).is_none()
+        && motion.pivot == other.pivot
+        && (motion.interpolation == other.interpolation || solids_stay)
 }
 
 /// Keys whose values differ between two scenes, and the values of the second as a file has them; nothing where it has none.
@@ -96,6 +104,9 @@ fn short(number: f64) -> String {
 mod tests {
     use super::*;
     use crate::Style;
+    use crate::scene::{
+        ColliderSection, Interpolation, KeyframeSection, MotionName, SphereSection, TeleportSection,
+    };
 
     #[test]
     fn what_can_be_changed_while_it_plays_is_and_the_rest_is_loaded() {
@@ -118,6 +129,32 @@ mod tests {
         let mut mapped = to.clone();
         mapped.look.color_map = Some("map.png".into());
         assert!(changes(&to, &mapped).is_none(), "a map is read when the scene is loaded");
+    }
+
+    #[test]
+    fn a_motion_that_is_read_otherwise_is_loaded() {
+        let mut from = Scene::demo();
+        (from.motion.name, from.motion.file) = (MotionName::File, Some("walk.bvh".into()));
+        let is_loaded = |from: &Scene, set: fn(&mut Scene)| {
+            let mut to = from.clone();
+            set(&mut to);
+            assert!(to != *from);
+            changes(from, &to).is_none()
+        };
+        for (key, set) in [
+            ("joint", (|to| to.motion.joint = "Hips".to_owned()) as fn(&mut Scene)),
+            ("clip", |to| to.motion.clip = Some("run".to_owned())),
+            ("scale", |to| to.motion.scale = 0.01),
+            ("teleports", |to| to.motion.teleports = vec![TeleportSection { time: 1.0 }]),
+            ("pivot", |to| to.motion.pivot = Some(glam::Vec3::Y)),
+        ] {
+            assert!(is_loaded(&from, set), "motion.{key}");
+        }
+        let linear: fn(&mut Scene) = |to| to.motion.interpolation = Interpolation::Linear;
+        assert!(!is_loaded(&from, linear) && !is_loaded(&from, |to| to.motion.start = 0.5));
+        let keyframes = vec![KeyframeSection::default()];
+        from.colliders = vec![ColliderSection::Sphere(SphereSection { keyframes, ..Default::default() })];
+        assert!(is_loaded(&from, linear), "the way of a solid");
     }
 
     #[test]

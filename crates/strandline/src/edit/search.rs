@@ -133,11 +133,18 @@ pub fn with_value(scene: &Scene, key: &str, value: impl Into<Option<Value>>) -> 
     let mut table = toml::Table::try_from(scene).unwrap_or_default();
     let (sections, name) = key.rsplit_once('.').unwrap_or(("", key));
     let at = table_of(&mut table, sections, key)?;
-    match value.into() {
+    let value = value.into();
+    let is_given = value.is_some();
+    match value {
         Some(value) => at.insert(name.to_owned(), value),
         None => at.remove(name),
     };
-    changed(scene, &table, key)
+    let mut changed = changed(scene, &table, key)?;
+    if key == "motion.name" {
+        // A body that moves by itself keeps a motion that a person chose.
+        changed.given.motion_name = is_given;
+    }
+    Ok(changed)
 }
 
 #[cfg(test)]

@@ -47,9 +47,12 @@ const CLOSER: f32 = 0.7;
 pub(super) const DENSITY: f32 = 0.095;
 const ALL_HAIR: f32 = 0.5;
 
-/// Chooses settings that the scene leaves open, to fit a body's materials and a groom from a source.
+/// Chooses settings that the scene leaves open, to fit a body's materials and motion and a groom from a source.
 pub(super) fn fit(loading: &mut Loading) {
     loading.scene.choose_body_colors();
+    if loading.motion.is_some() {
+        loading.scene.rest_under_moving_body();
+    }
     if let Loading { scene, groom: Some(groom), mesh, notes, .. } = loading {
         if !loading.is_grown {
             notes.extend(choose(scene, groom));

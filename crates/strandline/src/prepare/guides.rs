@@ -63,7 +63,7 @@ pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
             let parts: Vec<_> = parts.map(|(motion, start)| (*start).zip(motion)).collect();
             let moving: Vec<usize> = (0..parts.len()).filter(|part| parts[*part].is_some()).collect();
             let skin = moving::with_parts(scene, skin, parts.into_iter(), body)?;
-            notes.extend(moving::open_loops(&skin, &moving));
+            notes.extend(moving::open_loops(&skin, &moving, f64::from(scene.simulation.time_step)));
             notes.extend(moving::unseen_motions(scene, &skin, &moving));
             Some(skin)
         }

@@ -209,7 +209,7 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
     let (head, odd) = head_motion(&scene, pivot, bounds)?;
     notes.extend(odd);
     let head = head.with_body(skin).with_neck(neck);
-    notes.extend(moving::open_loop("motion", head.gap_of_loop()));
+    notes.extend(moving::open_loop("motion", head.gap_of_loop(f64::from(scene.simulation.time_step))));
     let unseen = |(playback, span)| moving::unseen(&scene, "motion", playback, span);
     notes.extend(key_units::of_file(&scene, head.recorded()));
     notes.extend(head.played().and_then(unseen));

@@ -86,12 +86,12 @@ pub(super) fn unseen(scene: &Scene, key: &str, playback: Playback, span: [f64; 2
     })
 }
 
-/// A note for each motion that begins again and ends elsewhere than it begins, without a mark there. The parts of these
-/// numbers move by themselves.
-pub(super) fn open_loops(skin: &SkinMotion, parts: &[usize]) -> Vec<String> {
+/// A note for each motion that begins again and ends elsewhere than it begins, where hair is not carried over the gap within
+/// a step of `step` \[s\]. The parts of these numbers move by themselves.
+pub(super) fn open_loops(skin: &SkinMotion, parts: &[usize], step: f64) -> Vec<String> {
     let keys =
         std::iter::once("body".to_owned()).chain(parts.iter().map(|part| format!("body.parts[{part}]")));
-    keys.zip(skin.gaps_of_loops()).filter_map(|(key, gap)| open_loop(&key, gap)).collect()
+    keys.zip(skin.gaps_of_loops(step)).filter_map(|(key, gap)| open_loop(&key, gap)).collect()
 }
 
 /// The note on a motion of a section that ends `gap` \[m\] from where it begins.
@@ -142,7 +142,7 @@ mod tests {
         let told = |ways: [f32; 3], playback| {
             let body = SkinMotion::new(motion(ways[0]), playback, &rest, placing, &[]).unwrap();
             let body = body.with_part(12, motion(ways[1]), rounds, placing).unwrap();
-            open_loops(&body.with_part(24, motion(ways[2]), rounds, placing).unwrap(), &[0, 3])
+            open_loops(&body.with_part(24, motion(ways[2]), rounds, placing).unwrap(), &[0, 3], 0.01)
         };
         assert!(told([0.0, 0.005, 0.0], rounds).is_empty());
         assert!(told([1.0, 0.0, 0.0], Playback::default()).is_empty(), "no loop");

@@ -1,4 +1,4 @@
-use super::Scene;
+use super::{MotionName, Scene};
 
 /// Settings that a scene file gives, among those that would otherwise be chosen to fit the groom. Comparisons of scenes
 /// ignore it.
@@ -16,6 +16,7 @@ pub struct Given {
     pub full_distance: bool,
     pub body_color: bool,
     pub body_materials: bool,
+    pub motion_name: bool,
 }
 
 impl PartialEq for Given {
@@ -40,6 +41,7 @@ impl Given {
             "body.spacing" => &mut self.spacing,
             "body_look.color" => &mut self.body_color,
             "body_look.materials" => &mut self.body_materials,
+            "motion.name" => &mut self.motion_name,
             _ => return,
         };
         *given = true;
@@ -53,11 +55,25 @@ impl Scene {
         let Given { body_color, body_materials, .. } = self.given;
         self.body_look.materials &= !body_color || body_materials || self.body.file.is_none();
     }
+
+    /// Chooses the motion of the head, beside that of a body that moves by itself.
+    pub fn set_motion(&mut self, name: MotionName) {
+        (self.motion.name, self.given.motion_name) = (name, true);
+    }
+
+    /// Lets the head rest under a body that moves by itself, where no motion was chosen: the default one would shake the
+    /// whole body on top of its own.
+    pub(crate) fn rest_under_moving_body(&mut self) {
+        if !self.given.motion_name && self.motion.name == MotionName::default() {
+            self.motion.name = MotionName::Still;
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::edit::with_value;
 
     #[test]
     fn a_colour_that_is_given_stands_for_those_of_the_body() {
@@ -75,5 +91,33 @@ mod tests {
         assert!(!chosen("", &[["body_look.color", "[0.5, 0.4, 0.3]"]]));
         let both = [["body_look.color", "[0.5, 0.4, 0.3]"], ["body_look.materials", "true"]];
         assert!(chosen("", &both));
+    }
+
+    #[test]
+    fn a_motion_that_is_chosen_stands_beside_that_of_the_body() {
+        let name = |mut scene: Scene| {
+            scene.rest_under_moving_body();
+            scene.motion.name
+        };
+        let parsed = |text: &str| Scene::parse(text, "a test").unwrap();
+        let set = |scene: &mut Scene| scene.set("motion.name", "shake").unwrap();
+        let with = |act: fn(&mut Scene)| {
+            let mut scene = Scene::demo();
+            act(&mut scene);
+            scene
+        };
+        for (scene, expected) in [
+            (Scene::demo(), MotionName::Still),
+            (parsed("[motion]\nneck = true"), MotionName::Still),
+            (parsed("[motion]\nname = \"shake\""), MotionName::Shake),
+            (with(|scene| scene.set_motion(MotionName::Shake)), MotionName::Shake),
+            (with(|scene| scene.motion.name = MotionName::Turn), MotionName::Turn),
+            (with(set), MotionName::Shake),
+        ] {
+            assert_eq!(name(scene), expected);
+        }
+        let edited = |value: Option<toml::Value>| with_value(&Scene::demo(), "motion.name", value).unwrap();
+        assert_eq!(name(edited(Some("shake".into()))), MotionName::Shake);
+        assert_eq!(name(edited(None)), MotionName::Still);
     }
 }

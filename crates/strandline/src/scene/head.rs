@@ -95,10 +95,11 @@ impl HeadMotion {
         self.recorded.as_ref().filter(|_| self.is_recorded).map(RecordedMotion::played)
     }
 
-    /// Way \[m\] from the end of the motion of a file that begins again to its beginning, where the head follows it.
-    pub(crate) fn gap_of_loop(&self) -> f32 {
+    /// Way \[m\] from the end of the motion of a file that begins again to its beginning, where the head follows it and hair is
+    /// not carried over the gap within a step of `step` \[s\].
+    pub(crate) fn gap_of_loop(&self, step: f64) -> f32 {
         let recorded = self.recorded.as_ref().filter(|_| self.is_recorded);
-        recorded.map_or(0.0, RecordedMotion::gap_of_loop)
+        recorded.map_or(0.0, |recorded| recorded.gap_of_loop(step))
     }
 
     /// Motion of the body itself; `None` for a rigid one.

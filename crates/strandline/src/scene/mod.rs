@@ -149,6 +149,7 @@ impl Scene {
             spacing: given.body.as_ref().is_some_and(|body| body.spacing.is_some()),
             body_color: body_look.is_some_and(|look| look.color.is_some()),
             body_materials: body_look.is_some_and(|look| look.materials.is_some()),
+            motion_name: given.motion.as_ref().is_some_and(|motion| motion.name.is_some()),
         };
         let simulation = given.simulation.as_ref().and_then(|simulation| simulation.backend);
         let pictures = given.picture.as_ref().and_then(|picture| picture.backend);

@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 use strandline_base::math;
-use strandline_base::{choices, settings};
+use strandline_base::{SettingError, choices, settings};
 
 use super::TeleportSection;
 use crate::{
@@ -50,7 +50,7 @@ settings! {
 settings! {
     /// Motion of the head.
     pub struct MotionSection {
-        /// The motion.
+        /// The motion; without a name that of a body that moves by itself is "still".
         name: MotionName = MotionName::default();
         /// Point about which the head turns, head space; without one it is the mannequin's neck, or a
         /// point low in the body's or the groom's box.
@@ -104,6 +104,39 @@ impl MotionSection {
                 Motion::keyframes(&keys)?
             }
         })
+    }
+
+    /// The key of what differs from another section in how the motion of `file` is read; `None` where that motion is the
+    /// same. It is read when a scene is loaded.
+    pub(crate) fn differs_in_file(&self, other: &Self) -> Option<&'static str> {
+        let differs = [
+            ("motion.file", self.file != other.file),
+            ("motion.joint", self.joint != other.joint),
+            ("motion.clip", self.clip != other.clip),
+            ("motion.scale", self.scale != other.scale),
+            ("motion.teleports", self.teleports != other.teleports),
+        ];
+        differs.into_iter().find(|(_, differs)| *differs).map(|(key, _)| key)
+    }
+
+    /// Checks that hair which was loaded with this section can follow another one.
+    ///
+    /// # Errors
+    /// The motion of a file that was not read as the other section says.
+    pub(crate) fn check_next(&self, next: &Self) -> Result<(), SettingError> {
+        if next.name != MotionName::File {
+            return Ok(());
+        }
+        if next.file.is_none() {
+            return Err(SettingError::new("motion.name", "\"file\" without one", "`motion.file` too"));
+        }
+        match self.differs_in_file(next) {
+            Some(key) => {
+                let found = "another value than that of the motion as loaded";
+                Err(SettingError::new(key, found, "the same one, or the scene loaded again"))
+            }
+            None => Ok(()),
+        }
     }
 
     /// Time of the motion of `file` at a time of the scene.
@@ -242,6 +275,23 @@ mod tests {
         for (time, share) in [(-1.0, 0.0), (0.0, 0.0), (1.0, 0.5), (2.0, 1.0), (3.0, 1.0)] {
             assert_eq!(wind.at(time), Vec3::X * share, "{time} s");
         }
+    }
+
+    #[test]
+    fn a_motion_of_a_file_is_followed_as_it_was_loaded() {
+        let joint = |joint: &str| MotionSection {
+            name: MotionName::File,
+            file: Some("walk.bvh".into()),
+            joint: joint.to_owned(),
+            ..MotionSection::default()
+        };
+        let nod = MotionSection { name: MotionName::Nod, ..MotionSection::default() };
+        let bare = MotionSection { file: None, ..joint("Head") };
+        assert!(joint("Head").check_next(&joint("Head")).is_ok() && joint("Head").check_next(&nod).is_ok());
+        let refused = |from: &MotionSection, to: &MotionSection| from.check_next(to).unwrap_err().to_string();
+        assert!(refused(&nod, &bare).contains("expected `motion.file` too"));
+        assert!(refused(&nod, &joint("Head")).starts_with("motion.file is another"));
+        assert!(refused(&joint("Head"), &joint("Hips")).starts_with("motion.joint is another"));
     }
 
     #[test]

@@ -37,7 +37,8 @@ impl Simulation {
             jump(before, &drive.body, root, step).map(|what| Jump { time, what })
         };
         let of_span = || {
-            let what = jump(here, &end, root, (span.end - span.start).max(step))?;
+            // The way lies between states of steps, however long the frame is that they stand for.
+            let what = jump(here, &end, root, drives.len() as f64 * step)?;
             Some(Jump { time: span.end, what })
         };
         let found = (0..).zip(before.zip(&*drives)).find_map(of_step).or_else(of_span);

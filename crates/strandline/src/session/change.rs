@@ -32,7 +32,8 @@ pub enum Change {
     /// Another wind.
     Wind(WindSection),
     /// A motion of the head of another name, from its beginning; or other keyframes of it, or a further turn added to it,
-    /// at its present time. The pivot stays.
+    /// at its present time. The pivot stays, and solids go from key to key as before. A head follows a motion of a file as it
+    /// was loaded: another file, joint, clip, scale or mark is refused.
     Motion(Box<MotionSection>),
     /// Takes the first hair on a line of sight, and all hair within a distance \[m\] of it, into a hand.
     Grab(Ray, f32),

@@ -8,7 +8,7 @@ use strandline_base::Group;
 use super::job::{Live, Weather};
 use crate::{
     Error, HeadMotion, Scene,
-    scene::{MotionName, MotionSection, WindSection},
+    scene::{Interpolation, MotionName, MotionSection, WindSection},
 };
 
 /// Frames of a second in a loop of the host.
@@ -128,6 +128,11 @@ impl Direction {
         }
         (self.motion, self.weather) = (motion, None);
         Ok(())
+    }
+
+    /// The way from pose to pose.
+    pub fn interpolation(&self) -> Interpolation {
+        self.motion.interpolation
     }
 
     /// True where the motion would bend a neck that the head does not have.

@@ -65,6 +65,10 @@ use job::Done;
 use kept::Kept;
 use moment::Moment;
 
+/// The note on solids beside a head whose poses are joined in another way.
+const SOLIDS_STAY: &str =
+    "motion.interpolation: solids go from key to key as before until the scene is loaded again";
+
 /// A simulation, its renderer, and the commands between them.
 pub(crate) struct Session<E> {
     /// The scene, fitted to its groom.
@@ -275,6 +279,7 @@ impl<E: Executor> Session<E> {
             Change::Picture(settings) => self.set_picture(settings)?,
             Change::Wind(wind) => self.direction.set_wind(wind)?,
             Change::Motion(motion) => {
+                self.scene.motion.check_next(&motion)?;
                 let known = self.motion_notes();
                 self.direction.set_motion(*motion)?;
                 let new = self.motion_notes().into_iter().filter(|note| !known.contains(note));
@@ -300,8 +305,8 @@ impl<E: Executor> Session<E> {
         Ok(())
     }
 
-    /// Notes on the motion: a neck that it would bend and that stays stiff, and a motion that begins again and ends elsewhere than it
-    /// begins.
+    /// Notes on the motion: a neck that it would bend and that stays stiff, a motion that begins again and ends elsewhere than it
+    /// begins, and solids that keep their ways.
     fn motion_notes(&self) -> Vec<String> {
         let body = &self.scene.body;
         let is_bust = self.view.body().is_some() && body.file.is_none() && !body.exact;
@@ -311,7 +316,12 @@ impl<E: Executor> Session<E> {
             STIFF_NECK
         };
         let neck = self.direction.lacks_neck().then(|| stiff.to_owned());
-        neck.into_iter().chain(open_loop("motion", self.direction.head.gap_of_loop())).collect()
+        let is_keyed = self.scene.colliders.iter().any(|solid| !solid.keyframes().is_empty());
+        let other_way = self.direction.interpolation() != self.scene.motion.interpolation;
+        let solids = (is_keyed && other_way).then(|| SOLIDS_STAY.to_owned());
+        let step = f64::from(self.settings_asked().time_step);
+        let open = open_loop("motion", self.direction.head.gap_of_loop(step));
+        neck.into_iter().chain(open).chain(solids).collect()
     }
 
     /// Changes the view without a check: the next picture refuses settings outside their range.

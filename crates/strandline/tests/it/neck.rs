@@ -2,7 +2,7 @@
 
 use strandline::{
     Backend, Change, Event, FrameLoop, Pose, Prepared, Scene,
-    scene::{MotionName, MotionSection},
+    scene::{ColliderSection, Interpolation, KeyframeSection, MotionName, MotionSection, SphereSection},
 };
 
 /// The demo with few strands and a neck.
@@ -54,7 +54,8 @@ fn told_live(prepared: Prepared, change: impl FnOnce(&mut MotionSection)) -> Vec
         Event::Note(note) => Some(note),
         _ => None,
     });
-    notes.filter(|note| note.contains("stays stiff") || note.contains("motion.loop")).collect()
+    let of_motion = ["stays stiff", "motion.loop", "motion.interpolation"];
+    notes.filter(|note| of_motion.iter().any(|words| note.contains(words))).collect()
 }
 
 #[test]
@@ -89,4 +90,18 @@ fn a_loop_that_is_opened_while_hair_moves_is_told() {
     scene.motion.r#loop = true;
     let known = told_live(Prepared::new(&scene).unwrap(), |motion| motion.rotation.y = 5.0);
     assert!(known.is_empty(), "the load has told it: {known:?}");
+}
+
+#[test]
+fn a_motion_that_needs_a_load_is_refused_or_told_while_hair_moves() {
+    let mut prepared = few(false);
+    let file = MotionSection { name: MotionName::File, ..prepared.scene.motion.clone() };
+    let keyframes = vec![KeyframeSection::default()];
+    prepared.scene.colliders =
+        vec![ColliderSection::Sphere(SphereSection { keyframes, ..SphereSection::default() })];
+    let mut hair = FrameLoop::open(few(false), Backend::Cpu).unwrap();
+    let error = hair.change(Change::Motion(file.into())).unwrap_err().to_string();
+    assert!(error.contains("motion.name is \"file\" without one, expected `motion.file` too"), "{error}");
+    let told = told_live(prepared, |motion| motion.interpolation = Interpolation::Linear);
+    assert!(told.len() == 1 && told[0].contains("solids go from key to key as before"), "{told:?}");
 }

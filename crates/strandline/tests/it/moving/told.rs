@@ -1,7 +1,10 @@
 //! Odd motions, and what is said of them.
 
 use super::*;
-use strandline::Jump;
+use strandline::{
+    Jump,
+    scene::{Interpolation, KeyframeSection},
+};
 
 /// The bust in memory, 0.3 m aside from 0.2 s on, with one vertex of its chest far beyond all places.
 fn aside() -> (Scene, Sources) {
@@ -91,4 +94,48 @@ fn a_loop_that_does_not_close_is_told() {
     walks.body.teleports = vec![TeleportSection { time: 0.0 }];
     let marked = Prepared::new(&walks).unwrap().notes.join("\n");
     assert!(!marked.contains("body.loop"), "{marked}");
+}
+
+/// Motion of the head that a scene file without `motion.name` gets beside its body.
+#[test]
+fn a_body_that_moves_is_not_shaken_unless_the_scene_says_so() {
+    let name = |body: &str, motion: &str| {
+        let text = format!(
+            "[style]\nstyle = \"bob\"\nstrand_count = 40\n[groom]\nbound = 0\n[body]\nspacing = 0.02\nfile = '{}'\n{body}\n{motion}",
+            bust().display()
+        );
+        Prepared::new(&Scene::parse(&text, "a test").unwrap()).unwrap().scene.motion.name
+    };
+    assert_eq!(name("clip = \"smile\"", ""), MotionName::Still);
+    assert_eq!(name("clip = \"smile\"", "[motion]\nname = \"shake\""), MotionName::Shake);
+    let part = format!("[[body.parts]]\nfile = '{}'\nclip = \"smile\"", bust().display());
+    assert_eq!(name("", &part), MotionName::Still, "a part that moves");
+    assert_eq!(name("", ""), MotionName::Shake, "a body that rests");
+    let (mut scene, sources) = aside();
+    scene.motion.name = MotionName::Shake;
+    assert_eq!(Prepared::from_sources(&scene, &sources).unwrap().scene.motion.name, MotionName::Still);
+    scene.set_motion(MotionName::Shake);
+    assert_eq!(Prepared::from_sources(&scene, &sources).unwrap().scene.motion.name, MotionName::Shake);
+}
+
+/// A built-in bust that drives evenly: frames of 1/24 s hold two or three steps of 1/60 s, those of 1/50 s one or two.
+#[test]
+fn an_even_motion_slower_than_a_jump_is_none_at_any_frame_rate() {
+    let jumps = |speed: f32, rate: f32| {
+        let mut drives = scene("nod");
+        (drives.body.clip, drives.body.file, drives.motion.name) = (None, None, MotionName::Keyframes);
+        drives.motion.interpolation = Interpolation::Linear;
+        let key = |time: f64| KeyframeSection {
+            time,
+            translation: time as f32 * speed * Vec3::X,
+            ..Default::default()
+        };
+        drives.motion.keyframes = vec![key(0.0), key(1.0)];
+        drives.film.frames_per_second = rate;
+        let mut hair = Hair::open(&drives).unwrap();
+        (0..8).for_each(|frame| drop(hair.play(frame).unwrap()));
+        hair.take_notes().iter().filter(|note| note.contains("jumps by")).count()
+    };
+    assert_eq!([jumps(22.0, 24.0), jumps(16.0, 50.0)], [0, 0], "slower than 25 m/s");
+    assert!(jumps(27.0, 24.0) > 0, "the threshold stands");
 }
