@@ -454,7 +454,8 @@ class Motion(TypedDict, total=False):
     """Motion of the head."""
 
     name: str
-    """The motion. Allowed: one of still, shake, nod, turn, keyframes, file."""
+    """The motion; without a name that of a body that moves by itself is "still". Allowed: one of still, shake, nod,
+    turn, keyframes, file."""
 
     pivot: Sequence[float]
     """Point about which the head turns, head space; without one it is the mannequin's neck, or a point low in the

@@ -68,7 +68,7 @@ def _body(body: Body, folder: str) -> str:
     """The file of a body, by the way that files of extras go."""
     path = os.path.join(folder, "body.npz" if body.motion is not None else "body.obj")
     if body.motion is not None:
-        np.savez(path, vertices=body.motion, faces=body.faces, fps=body.frames_per_second)
+        np.savez(path, vertices=body.motion, faces=body.faces, fps=body.frames_per_second, teleports=body.teleports)
     else:
         _extras.write_obj(body, path)
     return path

@@ -97,7 +97,7 @@ def test_a_machine_without_a_display_says_so(monkeypatch):
 
 def test_the_window_gets_what_is_in_memory(tmp_path, groom, ball):
     """The words of the window, which another command takes too, load the same strands."""
-    moving = Body(ball.vertices, ball.faces, motion=np.stack([ball.vertices] * 3))
+    moving = Body(ball.vertices, ball.faces, motion=np.stack([ball.vertices] * 3), teleports=[0.02])
     for body in (ball, moving):
         with shake(groom, body=body) as simulation:
             words = window.words_of(simulation, str(tmp_path))
@@ -108,6 +108,7 @@ def test_the_window_gets_what_is_in_memory(tmp_path, groom, ball):
         other = strandline.Cache(tmp_path / "other.npz")
         assert len(other) == wanted.frames
         assert np.allclose(other[1], strandline.Cache(tmp_path / "own.npz")[1], atol=1e-6)
+    assert np.load(tmp_path / "body.npz")["teleports"] == [0.02]
     assert window.words_of(None, str(tmp_path)) == [] and window.words_of("a.hair", str(tmp_path)) == ["a.hair"]
     assert window.words_of(groom, str(tmp_path))[0] == "--groom" and os.path.exists(tmp_path / "groom.npz")
     assert window.words_of(Scene(film={"frames": 2}), str(tmp_path)) == ["--scene", str(tmp_path / "scene.toml")]

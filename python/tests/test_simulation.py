@@ -111,8 +111,13 @@ def test_a_body_takes_new_vertices_every_step_or_as_a_whole(groom, ball):
             assert all(report.non_finite == 0 for report in reports)
     moving = Body(ball.vertices, ball.faces, motion=swell, frames_per_second=30)
     with shake(groom, body=moving, motion=None) as simulation:
+        assert simulation.scene["motion.name"] == "still"
         for frame in simulation.frames(4):
             assert np.isfinite(frame.points).all()
+    with shake(groom, body=moving, motion="shake") as simulation:
+        assert simulation.scene["motion.name"] == "shake"
+    with shake(groom, body=ball, motion=None) as simulation:
+        assert simulation.scene["motion.name"] == "shake"
     assert np.allclose(moving.at(0.5 / 30), 0.5 * (swell[0] + swell[1]))
 
 

@@ -258,13 +258,39 @@ fn rigid(transform: &DMat4) -> (DQuat, DVec3) {
 mod tests {
     use super::*;
 
-    #[test]
-    fn the_pose_is_that_of_the_joint_since_its_beginning() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("turn.bvh");
+    /// A head that turns by 40 degrees, then moves by 10 units, over a second: its file in a folder.
+    fn turn(folder: &Path) -> std::path::PathBuf {
+        let path = folder.join("turn.bvh");
         let text = "HIERARCHY ROOT Head { OFFSET 0 0 0 CHANNELS 6 Xposition Yposition Zposition Yrotation Xrotation \
                     Zrotation } MOTION Frames: 3 Frame Time: 0.5 100 160 0 10 0 0 100 160 0 50 0 0 110 160 0 50 0 0";
         std::fs::write(&path, text).unwrap();
+        path
+    }
+
+    #[test]
+    fn a_gap_of_a_loop_is_that_over_which_hair_is_pulled() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = turn(folder.path());
+        let motion = RecordedMotion::load(&path, "Head", None, 0.01).unwrap();
+        let rounds = Playback { start: 0.5, speed: -0.5, is_loop: true };
+        // 10 cm, and 40 degrees of a head of 10 cm.
+        let gap =
+            |motion: &RecordedMotion, playback| motion.clone().with_playback(playback).gap_of_loop(0.01);
+        assert!((gap(&motion, rounds) - 0.1684).abs() < 1e-4);
+        assert_eq!(motion.gap_of_loop(0.01), 0.0);
+        assert_eq!(gap(&motion, Playback { speed: 0.0, ..rounds }), 0.0, "it stands still");
+        for mark in [0.0, 1.0] {
+            let closed = motion.clone().with_teleports(&[mark]).unwrap();
+            assert_eq!(gap(&closed, rounds), 0.0, "a mark at {mark}");
+        }
+        let far = RecordedMotion::load(&path, "Head", None, 0.1).unwrap();
+        assert_eq!(gap(&far, rounds), 0.0, "1 m in a step is a jump by itself");
+    }
+
+    #[test]
+    fn the_pose_is_that_of_the_joint_since_its_beginning() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = turn(folder.path());
         let motion = RecordedMotion::load(&path, "Head", None, 0.01).unwrap();
         let pivot = Vec3::new(0.0, -0.06, -0.02);
         assert_eq!(motion.pose(-1.0, pivot), motion.pose(0.0, pivot));
@@ -306,18 +332,6 @@ mod tests {
             let expected = expected.iter().find(|(known, _)| *known == time).map_or(0, |(_, jumps)| *jumps);
             assert_eq!(jumps, expected, "{time}");
         }
-        // 10 cm, and 40 degrees of a head of 10 cm.
-        let gap =
-            |motion: &RecordedMotion, playback| motion.clone().with_playback(playback).gap_of_loop(0.01);
-        assert!((gap(&motion, rounds) - 0.1684).abs() < 1e-4);
-        assert_eq!(motion.gap_of_loop(0.01), 0.0);
-        assert_eq!(gap(&motion, Playback { speed: 0.0, ..rounds }), 0.0, "it stands still");
-        for mark in [0.0, 1.0] {
-            let closed = motion.clone().with_teleports(&[mark]).unwrap();
-            assert_eq!(gap(&closed, rounds), 0.0, "a mark at {mark}");
-        }
-        let far = RecordedMotion::load(&path, "Head", None, 0.1).unwrap();
-        assert_eq!(gap(&far, rounds), 0.0, "1 m in a step is a jump by itself");
         let absent = RecordedMotion::load(&path, "Hips", None, 1.0).unwrap_err().to_string();
         assert!(absent.contains("no joint `Hips` among `Head`") && !absent.contains("export"), "{absent}");
     }

@@ -133,24 +133,26 @@ mod tests {
 
     #[test]
     fn a_motion_that_is_read_otherwise_is_loaded() {
+        type Set = fn(&mut Scene);
         let mut from = Scene::demo();
         (from.motion.name, from.motion.file) = (MotionName::File, Some("walk.bvh".into()));
-        let is_loaded = |from: &Scene, set: fn(&mut Scene)| {
+        let is_loaded = |from: &Scene, set: Set| {
             let mut to = from.clone();
             set(&mut to);
             assert!(to != *from);
             changes(from, &to).is_none()
         };
-        for (key, set) in [
-            ("joint", (|to| to.motion.joint = "Hips".to_owned()) as fn(&mut Scene)),
+        let read: [(&str, Set); 5] = [
+            ("joint", |to| to.motion.joint = "Hips".to_owned()),
             ("clip", |to| to.motion.clip = Some("run".to_owned())),
             ("scale", |to| to.motion.scale = 0.01),
             ("teleports", |to| to.motion.teleports = vec![TeleportSection { time: 1.0 }]),
             ("pivot", |to| to.motion.pivot = Some(glam::Vec3::Y)),
-        ] {
+        ];
+        for (key, set) in read {
             assert!(is_loaded(&from, set), "motion.{key}");
         }
-        let linear: fn(&mut Scene) = |to| to.motion.interpolation = Interpolation::Linear;
+        let linear: Set = |to| to.motion.interpolation = Interpolation::Linear;
         assert!(!is_loaded(&from, linear) && !is_loaded(&from, |to| to.motion.start = 0.5));
         let keyframes = vec![KeyframeSection::default()];
         from.colliders = vec![ColliderSection::Sphere(SphereSection { keyframes, ..Default::default() })];
