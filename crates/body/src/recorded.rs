@@ -194,7 +194,7 @@ impl RecordedMotion {
         }
     }
 
-    /// How it is played, and the times \[s\] of its first and its last sample.
+    /// Its playback, and the times \[s\] of its first and its last sample.
     pub fn played(&self) -> (Playback, [f64; 2]) {
         let begin = match &self.source {
             Source::Node(rig, _) => rig.begin(),

@@ -234,7 +234,7 @@ impl SkinMotion {
         BodyFrame::from(world_from_head).with_skin(skin).with_held(held_count)
     }
 
-    /// For each motion, in the order in which they were added, how it is played, and the times \[s\] of its first and its last
+    /// For each motion, in the order in which they were added, its playback, and the times \[s\] of its first and its last
     /// sample.
     pub fn played(&self) -> Vec<(Playback, [f64; 2])> {
         let of_part = |part: &Moving| (part.playback, [part.motion.begin(), part.motion.end()]);

@@ -8,8 +8,8 @@ use ::gltf::json::Value;
 use strandline_base::counted;
 use strandline_base::memory::{self, Need};
 
-use super::Fault;
 use super::buffers::Buffers;
+use super::fault::Fault;
 use super::track::{Property, Track, Way};
 use crate::parsing::{A_NAME, CLIPS, Refusal};
 use crate::teleports::Teleports;

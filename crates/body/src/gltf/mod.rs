@@ -4,6 +4,7 @@ mod address;
 mod buffers;
 mod clips;
 mod document;
+mod fault;
 mod materials;
 mod nodes;
 mod pictures;
@@ -17,7 +18,7 @@ use std::sync::Arc;
 use ::gltf::mesh::{Mode, Primitive};
 use ::gltf::{Document, Node};
 use glam::Vec3;
-use strandline_base::memory::{self, MemoryError};
+use strandline_base::memory;
 
 use crate::Mesh;
 use crate::parsing::Refusal;
@@ -25,6 +26,7 @@ use crate::part_names::Names;
 use buffers::{Buffers, load_buffers};
 use clips::Clips;
 use document::Parts;
+pub(crate) use fault::Fault;
 use materials::{Looks, Painter, Part};
 use nodes::Nodes;
 pub(crate) use rig::Rig;
@@ -33,18 +35,6 @@ use vertices::{Influences, Placement, Skins, Vertices, default_weights};
 /// The most vertices and the most triangles of one body, and those of a small file.
 const COUNT_LIMIT: usize = 16 << 20;
 const LEAST_COUNT_LIMIT: usize = 1 << 16;
-
-/// Why a file is not read.
-pub(crate) enum Fault {
-    Refused(Refusal),
-    Memory(MemoryError),
-}
-
-impl From<Refusal> for Fault {
-    fn from(refusal: Refusal) -> Self {
-        Self::Refused(refusal)
-    }
-}
 
 /// Reads a mesh, or the part of it that has a name, in the units of the file, all nodes in place; vertices without a
 /// normal get a zero one. Without a folder no file beside it is read.

@@ -90,7 +90,7 @@ impl HeadMotion {
         self.recorded.as_ref()
     }
 
-    /// How the motion of a file is played, and the times \[s\] of its first and its last sample, where the head follows it.
+    /// Playback of the motion of a file, and the times \[s\] of its first and its last sample, where the head follows it.
     pub(crate) fn played(&self) -> Option<(Playback, [f64; 2])> {
         self.recorded.as_ref().filter(|_| self.is_recorded).map(RecordedMotion::played)
     }
