@@ -21,7 +21,7 @@ fn small(mut scene: Scene) -> Scene {
     scene
 }
 
-/// What the scenes of styles leave out: strands of their own between guides, also on a skin that moves, and strands that
+/// Scenes beside those of styles: strands of their own between guides, also on a skin that moves, and strands that
 /// push each other apart.
 fn others() -> [(String, Scene); 3] {
     let mut between = small(Scene::demo());
