@@ -61,11 +61,15 @@ pub(super) fn with_parts(
     Ok(skin)
 }
 
+/// Sections of the body and of the parts of these numbers.
+fn keys(parts: &[usize]) -> impl Iterator<Item = String> {
+    std::iter::once("body".to_owned()).chain(parts.iter().map(|part| format!("body.parts[{part}]")))
+}
+
 /// A note for each motion that plays outside of the film. The parts of these numbers move by themselves.
 pub(super) fn unseen_motions(scene: &Scene, skin: &SkinMotion, parts: &[usize]) -> Vec<String> {
-    let keys =
-        std::iter::once("body".to_owned()).chain(parts.iter().map(|part| format!("body.parts[{part}]")));
-    keys.zip(skin.played())
+    keys(parts)
+        .zip(skin.played())
         .filter_map(|(key, (playback, span))| unseen(scene, &key, playback, span))
         .collect()
 }
@@ -89,9 +93,7 @@ pub(super) fn unseen(scene: &Scene, key: &str, playback: Playback, span: [f64; 2
 /// A note for each motion that begins again and ends elsewhere than it begins, where hair is not carried over the gap within
 /// a step of `step` \[s\]. The parts of these numbers move by themselves.
 pub(super) fn open_loops(skin: &SkinMotion, parts: &[usize], step: f64) -> Vec<String> {
-    let keys =
-        std::iter::once("body".to_owned()).chain(parts.iter().map(|part| format!("body.parts[{part}]")));
-    keys.zip(skin.gaps_of_loops(step)).filter_map(|(key, gap)| open_loop(&key, gap)).collect()
+    keys(parts).zip(skin.gaps_of_loops(step)).filter_map(|(key, gap)| open_loop(&key, gap)).collect()
 }
 
 /// The note on a motion of a section that ends `gap` \[m\] from where it begins.
