@@ -123,7 +123,6 @@ mod tests {
     use strandline_body::{BodyFrame, Mesh};
     use strandline_groom::{Groom, Guides};
 
-    use super::*;
     use crate::{
         BodyLook, Camera, FrameInput, LevelOfDetail, Light, LightKind, Look, PictureSettings, Renderer,
     };
