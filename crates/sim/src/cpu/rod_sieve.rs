@@ -90,7 +90,8 @@ impl Sieve for Across<'_> {
         let along = (upper.start - lower.start).normalize_or(Vec3::X);
         let across = along.any_orthonormal_vector();
         let ways = [lower, upper].map(|end| Vector::splat(end.coast));
-        let sights = [across, along.cross(across)].map(|direction| Sight::new(Vector::splat(direction), &ways));
+        let sights =
+            [across, along.cross(across)].map(|direction| Sight::new(Vector::splat(direction), &ways));
         let (start, along) = (Vector::splat(lower.start), Vector::splat(along));
         One { start, along, ways, sights, reach: f32x8::splat(self.reach(segment)) }
     }
@@ -111,7 +112,7 @@ impl Sieve for Across<'_> {
     }
 
     #[inline]
-    fn may_meet(&self, one: &One, eight: &Eight) -> f32x8 {
+    fn may_meet(&self, one: &One, eight: &Eight, lanes: u32) -> u32 {
         let reach = one.reach + eight.reach;
         let [lower, upper] = eight.ends.map(|end| end - one.start);
         let seen = |sight: &Sight, reach: f32x8| {
@@ -122,17 +123,21 @@ impl Sieve for Across<'_> {
                 low += (c.fast_min(d) - sight.most).fast_min(f32x8::ZERO);
                 high += (c.fast_max(d) - sight.least).fast_max(f32x8::ZERO);
             }
-            low.simd_le(reach) & high.simd_ge(-reach)
+            (low.simd_le(reach) & high.simd_ge(-reach)).to_bitmask()
         };
-        let seen_twice = seen(&one.sights[0], reach) & seen(&one.sights[1], reach);
-        if !seen_twice.any() {
-            return seen_twice;
+        let lanes = lanes & seen(&one.sights[0], reach);
+        if lanes == 0 {
+            return 0;
+        }
+        let lanes = lanes & seen(&one.sights[1], reach);
+        if lanes == 0 {
+            return 0;
         }
         let edge = upper - lower;
         let across = one.along.cross(edge);
         let square = across.dot(across);
-        let parallel = square.simd_lt(edge.dot(edge) * f32x8::splat(PARALLEL));
-        seen_twice & (parallel | seen(&Sight::new(across, &one.ways), reach * square.sqrt()))
+        let parallel = square.simd_lt(edge.dot(edge) * f32x8::splat(PARALLEL)).to_bitmask();
+        lanes & (parallel | seen(&Sight::new(across, &one.ways), reach * square.sqrt()))
     }
 
     fn judge(&self, [one, other]: [u32; 2]) -> Option<f32> {

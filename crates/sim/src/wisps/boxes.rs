@@ -45,8 +45,8 @@ pub trait Sieve: Sync {
 
     fn eight(&self, segments: [u32; LANES]) -> Self::Eight;
 
-    /// Mask of the segments that may be near the one.
-    fn may_meet(&self, one: &Self::One, eight: &Self::Eight) -> f32x8;
+    /// Bits of those of the segments in some lanes that may be near the one.
+    fn may_meet(&self, one: &Self::One, eight: &Self::Eight, lanes: u32) -> u32;
 
     /// Distance \[m\] of two segments, the lower number first; none for those that are no pair.
     fn judge(&self, segments: [u32; 2]) -> Option<f32>;
@@ -92,11 +92,7 @@ impl Boxes {
     ) {
         pairs.clear();
         let Some(layout) = Layout::new(boxes) else { return };
-        boxes
-            .par_iter()
-            .with_min_len(COPIES)
-            .map(|one| layout.place(one))
-            .collect_into_vec(&mut self.places);
+        boxes.par_iter().with_min_len(COPIES).map(|one| layout.place(one)).collect_into_vec(&mut self.places);
         layout.sort(&self.places, &mut self.starts, &mut self.order);
         let order = &self.order;
         let groups = || (0..order.len().div_ceil(LANES)).into_par_iter().with_min_len(COPIES);
@@ -157,7 +153,7 @@ impl<S: Sieve> Search<'_, S> {
             let mut lanes = (ALL << before) & (ALL >> behind);
             lanes &= self.sorted.corners[group].meet(&low, &high);
             if lanes != 0 {
-                lanes &= self.sieve.may_meet(&one, &self.eights[group]).to_bitmask();
+                lanes = self.sieve.may_meet(&one, &self.eights[group], lanes);
             }
             while lanes != 0 {
                 self.judge(index, strip, begin + lanes.trailing_zeros() as usize, found);
@@ -208,8 +204,8 @@ mod tests {
 
         fn eight(&self, _: [u32; LANES]) {}
 
-        fn may_meet(&self, (): &(), (): &()) -> f32x8 {
-            f32x8::ZERO.simd_eq(f32x8::ZERO)
+        fn may_meet(&self, (): &(), (): &(), lanes: u32) -> u32 {
+            lanes
         }
 
         fn judge(&self, segments: [u32; 2]) -> Option<f32> {

@@ -2,7 +2,6 @@
 
 use glam::Vec3;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
-use wide::f32x8;
 
 use super::boxes::{Around, Boxes, Sieve};
 use super::place::{between, nearest};
@@ -79,8 +78,8 @@ impl Sieve for AtRest<'_> {
 
     fn eight(&self, _: [u32; LANES]) {}
 
-    fn may_meet(&self, (): &(), (): &()) -> f32x8 {
-        f32x8::ZERO.simd_eq(f32x8::ZERO)
+    fn may_meet(&self, (): &(), (): &(), lanes: u32) -> u32 {
+        lanes
     }
 
     fn judge(&self, [one, other]: [u32; 2]) -> Option<f32> {

@@ -85,8 +85,9 @@ impl Layout {
     /// Strips that a box takes.
     fn strips(&self, place: &Place) -> impl Iterator<Item = u32> + use<> {
         let (rows, Place { first, last, .. }) = (self.counts[1], *place);
-        (first[1]..=last[1])
-            .flat_map(move |column| (first[0]..=last[0]).map(move |row| u32::from(column) * rows + u32::from(row)))
+        (first[1]..=last[1]).flat_map(move |column| {
+            (first[0]..=last[0]).map(move |row| u32::from(column) * rows + u32::from(row))
+        })
     }
 
     /// The first strip of those that two boxes take, which may be of none.
