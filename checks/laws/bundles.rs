@@ -185,6 +185,24 @@ fn a_strand_alone_does_not_know_those_beside_it_in_memory() {
     assert_eq!(alone, run([0, 3, 6, 9, 12, 15, 18, 21]));
 }
 
+law! {
+    fn strands_that_are_nearest_where_they_are_held_fall(on) {
+        let settings = settings();
+        let mut groom = Groom::empty(8e-5);
+        for side in [-1.0, 1.0] {
+            groom.push([Vec3::new(0.0, 0.0, 1.02 * RADIUS * side), Vec3::new(0.2, 0.0, 0.05 * side)]);
+        }
+        let guides = Guides::resample(&groom, 12).unwrap();
+        let rest = RestShape::new(&guides, settings.line_density());
+        let model = Model::with_rest(&guides, rest, |_, point| point == 0, &settings, Vec::new()).unwrap();
+        let mut rig = Rig::new(on, model);
+        rig.steps(&vec![Drive::default(); 6]);
+        let tips = [0, 1].map(|strand| rig.state().positions[11].get(strand).y);
+        // 49 mm of a free fall in a tenth of a second.
+        assert!(tips.into_iter().all(|height| height < -0.03), "{tips:?}");
+    }
+}
+
 /// Way \[m\] in half a second of a loose strand on two rails that do not move, under gravity with a slope along them.
 fn slid(on: &On, slope: f32) -> f32 {
     let mut settings = Settings { gravity: Vec3::new(9.81 * slope, -9.81, 0.0), ..settings() };

@@ -130,3 +130,32 @@ impl Near {
         (self.given, self.force) = (given, force);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pair_that_never_gets_its_room_presses_with_a_bounded_force() {
+        let mut near = Near {
+            segments: [0, 8],
+            shares: [0.5; 2],
+            normal: Vec3::Y,
+            touch: 2e-3,
+            gap: 1e-3,
+            needs: 3e-4,
+            holds: [0.1; 2],
+            stiffness: 0.05,
+            force: Vec3::ZERO,
+            given: Vec3::ZERO,
+            change: Vec3::ZERO,
+            slid: false,
+            slides: false,
+        };
+        for _ in 0..5000 {
+            near.answer(Vec3::ZERO, Friction { sticks: 0.3, slides: 0.25 });
+        }
+        let bound = near.stiffness * near.needs / YIELDS;
+        assert!((near.force.y / bound - 1.0).abs() < 1e-3, "{} N, bound {bound}", near.force.y);
+    }
+}
