@@ -13,10 +13,11 @@ use super::rod_sieve::{Across, Eight, ROUNDING};
 use super::rod_strands::Hair;
 use crate::strands::rods::real::{Real, Vector};
 use crate::strands::rods::workspace::Carry;
-use crate::wisps::boxes::{Around, Boxes, Met};
+use crate::wisps::boxes::{Boxes, Met};
 use crate::wisps::pair::{Near, Pair};
 use crate::wisps::place::NEAR;
 use crate::wisps::radii::number;
+use crate::wisps::strips::Around;
 
 /// Parts of a step for which a margin lasts while a point goes on as it does, the least margin \[m\], and the most for more
 /// than one part: boxes that are much wider than others are cut.

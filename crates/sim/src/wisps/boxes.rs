@@ -1,11 +1,10 @@
 //! Pairs of segments whose boxes meet: boxes in strips, swept along an axis, eight at a time.
 
-use glam::Vec3;
 use strandline_base::par::prelude::*;
 use strandline_groom::LANES;
 use wide::f32x8;
 
-use super::strips::{Layout, Place};
+use super::strips::{Around, Layout, Place};
 
 /// Entries that a thread takes at a time.
 const CHUNK: usize = 256;
@@ -13,17 +12,6 @@ const CHUNK: usize = 256;
 const ALL: u32 = 0xff;
 /// Groups of eight entries, and boxes, that a thread copies at a time.
 const COPIES: usize = 512;
-
-/// A box about the way of a segment; it is left out if a corner is not finite.
-#[derive(Clone, Copy, Debug)]
-pub struct Around {
-    /// Corners \[m\].
-    pub low: Vec3,
-    pub high: Vec3,
-    /// Number of the segment, and of its strand.
-    pub segment: u32,
-    pub strand: u32,
-}
 
 /// Two segments whose boxes meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,7 +107,7 @@ impl Boxes {
 }
 
 impl Corners {
-    /// Those of a group of entries; lanes behind the last are empty.
+    /// Corners of the boxes of a group of entries; lanes behind the last are empty.
     fn of(group: usize, order: &[[u32; 2]], boxes: &[Around], layout: &Layout) -> Self {
         let mut low = [[f32::MAX; LANES]; 3];
         let mut high = [[f32::MIN; LANES]; 3];
@@ -189,6 +177,7 @@ impl Corners {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
     use strandline_body::Random;
 
     use super::*;

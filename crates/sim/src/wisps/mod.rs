@@ -6,4 +6,4 @@ pub(crate) mod pair;
 pub(crate) mod place;
 pub(crate) mod radii;
 pub(crate) mod settings;
-mod strips;
+pub(crate) mod strips;

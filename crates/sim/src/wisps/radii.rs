@@ -3,8 +3,9 @@
 use glam::Vec3;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
-use super::boxes::{Around, Boxes, Sieve};
+use super::boxes::{Boxes, Sieve};
 use super::place::{between, nearest};
+use super::strips::Around;
 
 /// Hair at rest as radii are measured on it, shapes `[block][point]` of lanes.
 pub(crate) struct AtRest<'a> {

@@ -2,8 +2,6 @@
 
 use glam::Vec3;
 
-use super::boxes::Around;
-
 /// Width of a strip, and of a bin along it, over the mean of the sides of boxes.
 const WIDE: f32 = 2.0;
 const BIN: f32 = 0.25;
@@ -12,6 +10,17 @@ const MOST_STRIPS: u32 = 64;
 const MOST_BINS: u32 = 1024;
 /// Most strips that a box takes along an axis: of a larger one those about its middle.
 const MOST_TAKEN: u32 = 8;
+
+/// A box about the way of a segment; it is left out if a corner is not finite.
+#[derive(Clone, Copy, Debug)]
+pub struct Around {
+    /// Corners \[m\].
+    pub low: Vec3,
+    pub high: Vec3,
+    /// Number of the segment, and of its strand.
+    pub segment: u32,
+    pub strand: u32,
+}
 
 /// Place of a box: bins of its lower and its upper corner, and the strips that it takes, from the first to the last along
 /// two axes. A box that is left out takes none.

@@ -1,6 +1,6 @@
 //! Forces on a strand and their derivatives: the system of a Newton step.
 
-use super::front::{Bends, Front, ROWS, Spring, UNKNOWNS};
+use super::front::{ALL, Bends, Front, ROWS, Spring, UNKNOWNS};
 use super::joint::{Joint, Slope};
 use super::real::{Real, Vector};
 use super::rod::{Node, Pull, Work};
@@ -8,9 +8,6 @@ use super::rounds::Push;
 
 /// Distance \[m\] from a solid's plane within which a point touches it.
 const ROUNDING: f64 = 1e-6;
-
-/// Share of inertia's moments that none exceeds.
-pub(super) const ALL: f64 = 1e30;
 
 impl<R: Real> Work<R> {
     /// Assembles the gradient and the Hessian, and eliminates from root to tip. Moments turn with the sections where they

@@ -1,7 +1,6 @@
 //! A strand's nodes and edges, and one implicit step of it.
 
-use super::assemble::ALL;
-use super::front::{Factors, UNKNOWNS, substitute};
+use super::front::{ALL, Factors, UNKNOWNS, substitute};
 use super::joint::{Joint, Segment};
 use super::real::{Real, Vector};
 

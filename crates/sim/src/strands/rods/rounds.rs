@@ -1,8 +1,7 @@
 //! Answers of a strand to the forces of others: Newton steps with what holds its points, and rounds with their factors
 //! kept.
 
-use super::assemble::ALL;
-use super::front::{ROWS, UNKNOWNS, substitute};
+use super::front::{ALL, ROWS, UNKNOWNS, substitute};
 use super::real::{Real, Vector};
 use super::rod::{Node, Pull, StepSettings, Work};
 
@@ -38,8 +37,8 @@ pub struct Turned<R> {
 /// Largest turn of a segment \[rad\] in a step after which tensions are kept.
 const CALM: f64 = 0.1;
 
-/// Moments of strands with pairs that turn with the sections, over those of inertia. What holds their nodes would hide a
-/// system that larger ones keep from being positive, and rounds with its factors would grow.
+/// Moments of strands with pairs that turn with the sections, over those of inertia. Larger ones may keep a system from
+/// being positive; the stiffness that holds nodes hides this, and rounds with such factors grow.
 const SMALL: f64 = 0.3;
 
 impl<R: Real> Work<R> {
