@@ -9,7 +9,7 @@ use strandline_sim::{ContactReport, CpuRunner, Drag, Drive, Model, Settings, Sta
 
 /// Radius of a wisp \[m\].
 const RADIUS: f32 = 1.25e-3;
-/// Strands of a bundle along each side of its section, and points of each.
+/// Strands of a bundle along each side of its section, where no other number is given, and points of each.
 const SIDE: usize = 3;
 const POINTS: usize = 24;
 /// Distance of a strand's ends \[m\].
@@ -41,17 +41,17 @@ fn hangs(place: Vec3) -> Vec<Vec3> {
     shares().map(|x| place + Vec3::new(SPAN * x, -sag() * (1.0 - 4.0 * x * x), 0.0)).collect()
 }
 
-/// Nine strands along z, a tenth longer than their span in waves aside, over nine along x that are a thousandth longer;
-/// `above` \[m\] apart.
-fn nine_over_nine(above: f32) -> Vec<Vec<Vec3>> {
+/// A bundle along z of strands a tenth longer than their span in waves aside, over one along x of strands a thousandth
+/// longer; `above` \[m\] apart, of `side` strands along each side of their sections.
+fn one_over_another(side: usize, above: f32) -> Vec<Vec<Vec3>> {
     let pitch = 2.04 * RADIUS;
-    let aside = |index: usize| pitch * ((index % SIDE) as f32 - 0.5 * (SIDE - 1) as f32);
+    let aside = |index: usize| pitch * ((index % side) as f32 - 0.5 * (side - 1) as f32);
     let lower =
-        (0..SIDE * SIDE).map(|index| hangs(Vec3::new(0.0, -(pitch * (index / SIDE) as f32), aside(index))));
+        (0..side * side).map(|index| hangs(Vec3::new(0.0, -(pitch * (index / side) as f32), aside(index))));
     let waves = 3.0 * std::f32::consts::TAU / SPAN;
     let high = 2.0 * 0.1_f32.sqrt() / waves;
-    let upper = (0..SIDE * SIDE).map(|index| {
-        let place = Vec3::new(aside(index), pitch * (1 + index / SIDE) as f32 - sag() + above, 0.0);
+    let upper = (0..side * side).map(|index| {
+        let place = Vec3::new(aside(index), pitch * (1 + index / side) as f32 - sag() + above, 0.0);
         let wave = |x: f32| Vec3::new(high * (waves * SPAN * (x + 0.5)).sin(), 0.0, SPAN * x);
         shares().map(|x| place + wave(x)).collect()
     });
@@ -59,7 +59,7 @@ fn nine_over_nine(above: f32) -> Vec<Vec<Vec3>> {
 }
 
 fn bundles(above: f32, settings: &Settings) -> Model {
-    held_at_both_ends(&nine_over_nine(above), settings)
+    held_at_both_ends(&one_over_another(SIDE, above), settings)
 }
 
 fn held_at_both_ends(strands: &[Vec<Vec3>], settings: &Settings) -> Model {
@@ -73,10 +73,10 @@ fn held_at_both_ends(strands: &[Vec<Vec3>], settings: &Settings) -> Model {
     Model::with_rest(&guides, rest, held, settings, Vec::new()).unwrap()
 }
 
-/// Height \[m\] of the middle of a strand.
-fn middle(state: &State, strand: usize) -> f32 {
-    let height = |point: usize| state.positions[strand / LANES * POINTS + point].get(strand % LANES).y;
-    0.5 * (height(POINTS / 2 - 1) + height(POINTS / 2))
+/// Place \[m\] of the middle of a strand.
+fn middle(state: &State, strand: usize) -> Vec3 {
+    let place = |point: usize| state.positions[strand / LANES * POINTS + point].get(strand % LANES);
+    0.5 * (place(POINTS / 2 - 1) + place(POINTS / 2))
 }
 
 /// Contacts, largest speed \[m/s\] and heights of all middles \[m\] after a number of steps.
@@ -84,13 +84,13 @@ fn rested(on: &On, above: f32, settings: &Settings, steps: usize) -> (Option<Con
     let mut rig = Rig::new(on, bundles(above, settings));
     let report = rig.steps(&vec![Drive::default(); steps]).pop().unwrap();
     let state = rig.state();
-    let heights = (0..2 * SIDE * SIDE).map(|strand| middle(state, strand)).collect();
+    let heights = (0..2 * SIDE * SIDE).map(|strand| middle(state, strand).y).collect();
     (report.contacts, report.speed_max, heights)
 }
 
 /// Strands of the upper bundle whose middle is below all of the lower one.
 fn passed(heights: &[f32]) -> usize {
-    let (lower, upper) = heights.split_at(SIDE * SIDE);
+    let (lower, upper) = heights.split_at(heights.len() / 2);
     let lowest = lower.iter().copied().fold(f32::MAX, f32::min);
     upper.iter().filter(|height| **height < lowest).count()
 }
@@ -102,10 +102,39 @@ law! {
             let (contacts, speed, heights) = rested(on, above, &settings(), 150);
             let contacts = contacts.unwrap();
             assert_eq!(passed(&heights), 0, "{above}: {heights:?}");
-            // A tenth of a radius; 0.01 mm were found.
-            assert!(contacts.deepest < 0.1 * RADIUS && contacts.crossed == 0, "{above}: {contacts:?}");
+            // A fifth of a radius: pairs yield to what presses them. 0.19 mm were found.
+            assert!(contacts.deepest < 0.2 * RADIUS && contacts.crossed == 0, "{above}: {contacts:?}");
             assert!(contacts.pairs > 20 && speed < 5e-4, "{above}: {contacts:?}, {speed} m/s");
         }
+    }
+}
+
+law! {
+    fn a_bundle_that_is_thrown_comes_to_rest(on) {
+        // 64 strands in 5 s, sixteen in 1.2 s or nine in 1.5 s.
+        let (side, steps) = on.either(on.brief((8, 300), (4, 72)), (3, 90));
+        let mut rig = Rig::new(on, held_at_both_ends(&one_over_another(side, 0.01), &settings()));
+        let count = 2 * side * side;
+        rig.change(|state| {
+            for strand in count / 2..count {
+                for point in 1..POINTS - 1 {
+                    let velocity = Vec3::new(0.0, -2.0, 0.0);
+                    state.velocities[strand / LANES * POINTS + point].set(strand % LANES, velocity);
+                }
+            }
+        });
+        let mut middles = |steps: usize| -> (Vec<Vec3>, Option<ContactReport>) {
+            let contacts = rig.steps(&vec![Drive::default(); steps]).pop().unwrap().contacts;
+            ((0..count).map(|strand| middle(rig.state(), strand)).collect(), contacts)
+        };
+        let (before, _) = middles(steps - 6);
+        let (after, contacts) = middles(6);
+        let contacts = contacts.unwrap();
+        let heights: Vec<f32> = after.iter().map(|place| place.y).collect();
+        assert!(passed(&heights) == 0 && contacts.crossed == 0, "{contacts:?}, {heights:?}");
+        // Half a millimetre a second; 0.02 were found.
+        let moved = before.iter().zip(&after).map(|(one, other)| one.distance(*other)).fold(0.0, f32::max);
+        assert!(moved < 0.1 * 5e-4 && contacts.pairs > 5 * count, "{moved} m in a tenth of a second, {contacts:?}");
     }
 }
 
@@ -138,7 +167,7 @@ fn contacts_do_not_depend_on_when_near_segments_were_looked_for() {
 fn a_strand_alone_does_not_know_those_beside_it_in_memory() {
     // Eight strands far from others, in a block of eight of their own, then each before two of the others.
     let run = |places: [usize; LANES]| {
-        let mut strands = nine_over_nine(0.0);
+        let mut strands = one_over_another(SIDE, 0.0);
         for (index, place) in places.into_iter().enumerate() {
             strands.insert(place, hangs(Vec3::new(0.0, 0.0, 1.0 + 0.05 * index as f32)));
         }
@@ -156,13 +185,32 @@ fn a_strand_alone_does_not_know_those_beside_it_in_memory() {
     assert_eq!(alone, run([0, 3, 6, 9, 12, 15, 18, 21]));
 }
 
+law! {
+    fn strands_that_are_nearest_where_they_are_held_fall(on) {
+        let settings = settings();
+        let mut groom = Groom::empty(8e-5);
+        for side in [-1.0, 1.0] {
+            groom.push([Vec3::new(0.0, 0.0, 1.02 * RADIUS * side), Vec3::new(0.2, 0.0, 0.05 * side)]);
+        }
+        let guides = Guides::resample(&groom, 12).unwrap();
+        let rest = RestShape::new(&guides, settings.line_density());
+        let model = Model::with_rest(&guides, rest, |_, point| point == 0, &settings, Vec::new()).unwrap();
+        let mut rig = Rig::new(on, model);
+        rig.steps(&vec![Drive::default(); 6]);
+        let tips = [0, 1].map(|strand| rig.state().positions[11].get(strand).y);
+        // 49 mm of a free fall in a tenth of a second.
+        assert!(tips.into_iter().all(|height| height < -0.03), "{tips:?}");
+    }
+}
+
 /// Way \[m\] in half a second of a loose strand on two rails that do not move, under gravity with a slope along them.
 fn slid(on: &On, slope: f32) -> f32 {
     let mut settings = Settings { gravity: Vec3::new(9.81 * slope, -9.81, 0.0), ..settings() };
     settings.strands.rods.rubbing = 0.0;
     let mut groom = Groom::empty(8e-5);
     for z in [-0.025, 0.025] {
-        groom.push([Vec3::new(-0.1, 0.0, z), Vec3::new(0.3, 0.0, z)]);
+        // A joint of the rails, at which the strand is caught a little, lies at 0.15 m.
+        groom.push([Vec3::new(-0.05, 0.0, z), Vec3::new(2.15, 0.0, z)]);
     }
     groom.push([Vec3::new(0.0, 2.0 * RADIUS, -0.04), Vec3::new(0.0, 2.0 * RADIUS, 0.04)]);
     let guides = Guides::resample(&groom, 12).unwrap();

@@ -30,6 +30,7 @@ mod rod_parts;
 mod rod_pulls;
 mod rod_rest;
 mod rod_room;
+mod rod_sieve;
 mod rod_strands;
 pub(crate) mod spans;
 pub(crate) mod wind_box;

@@ -8,14 +8,16 @@ use strandline_body::Pose;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use super::rod_pairs::{Look, Point, across, may_meet};
+use super::rod_pairs::{Look, Point};
+use super::rod_sieve::{Across, Eight, ROUNDING};
 use super::rod_strands::Hair;
 use crate::strands::rods::real::{Real, Vector};
 use crate::strands::rods::workspace::Carry;
-use crate::wisps::boxes::{Around, Boxes, Met};
+use crate::wisps::boxes::{Boxes, Met};
 use crate::wisps::pair::{Near, Pair};
 use crate::wisps::place::NEAR;
 use crate::wisps::radii::number;
+use crate::wisps::strips::Around;
 
 /// Parts of a step for which a margin lasts while a point goes on as it does, the least margin \[m\], and the most for more
 /// than one part: boxes that are much wider than others are cut.
@@ -24,8 +26,6 @@ const LEAST_MARGIN: f32 = 3e-4;
 const MOST_MARGIN: f32 = 6e-3;
 /// Mean way of points in a part \[m\] beyond which no list is kept.
 const CALM: f32 = 2e-4;
-/// Distance \[m\] that is rounding.
-const ROUNDING: f32 = 1e-5;
 /// Candidates and blocks of strands that a thread takes at a time.
 const CHUNK: usize = 1024;
 const BLOCKS: usize = 16;
@@ -59,9 +59,9 @@ pub(super) struct Neighbours {
     /// Way of a segment since then to the start of a part, and to its end \[m\].
     gone: Vec<Lanes>,
     reach: Vec<Lanes>,
-    /// Points in the part, by the number of their lane, and two directions across the segment at each.
+    /// Points in the part, by the number of their lane.
     points: Vec<Point>,
-    across: Vec<[Vec3; 2]>,
+    eights: Vec<Eight>,
     /// Way of a segment \[m\] by which its box is wider.
     wider: Vec<f32>,
     found: Vec<Vec<Near>>,
@@ -204,7 +204,6 @@ impl Neighbours {
                 gone: vec![Lanes::default(); places],
                 reach: vec![Lanes::default(); places],
                 points: vec![Point::default(); places * LANES],
-                across: vec![[Vec3::ZERO; 2]; places * LANES],
                 ..Self::default()
             };
         }
@@ -237,27 +236,20 @@ impl Neighbours {
 
     /// Finds the segments that may come to touch, of those that are `wider`; if they are moving, on all of their way.
     fn find_met(&mut self, hair: &Hair, moving: bool) {
-        let radius = |segment: u32| hair.model.radii[segment as usize / LANES].0[segment as usize % LANES];
-        let is_free = |segment: u32| {
-            let (index, lane) = (segment as usize / LANES, segment as usize % LANES);
-            [index, index + 1].iter().any(|at| hair.model.inverse_mass[*at].0[lane] > 0.0)
-        };
         let (mut around, mut met) = (std::mem::take(&mut self.around), std::mem::take(&mut self.met));
-        self.find_boxes(hair, moving, &mut around, |segment| NEAR * radius(segment));
-        let mut directions = std::mem::take(&mut self.across);
-        across(&self.points, &mut directions);
-        let (points, wider) = (&self.points, &self.wider);
-        let judge = |[one, other]: [u32; 2]| {
-            let more = if moving { ROUNDING } else { wider[one as usize] + wider[other as usize] };
-            let touch = NEAR * (radius(one) + radius(other)) + more;
-            let meets = may_meet(points, &directions, [one, other], moving, touch);
-            (meets && (is_free(one) || is_free(other))).then_some(f32::NEG_INFINITY)
+        self.find_boxes(hair, moving, &mut around);
+        let sieve = Across {
+            radii: &hair.model.radii,
+            inverse_mass: &hair.model.inverse_mass,
+            points: &self.points,
+            wider: &self.wider,
+            moving,
         };
-        self.boxes.pairs(&around, judge, &mut met);
+        self.boxes.pairs(&around, &sieve, &mut self.eights, &mut met);
         self.candidates.clear();
         self.candidates
             .extend(met.iter().map(|met| Candidate { segments: met.segments, until: met.distance }));
-        (self.around, self.met, self.across) = (around, met, directions);
+        (self.around, self.met) = (around, met);
     }
 
     /// Margins of hair that goes on as it does, from where it is.
@@ -277,28 +269,30 @@ impl Neighbours {
     }
 
     /// Boxes about the segments of all strands in the frame of the head, and about their ways if they are moving, wider by
-    /// a radius \[m\] and what segments are wider on each side; those that are not finite have none.
-    fn find_boxes(&self, hair: &Hair, moving: bool, around: &mut Vec<Around>, radius: impl Fn(u32) -> f32) {
+    /// what is near them and what segments are wider on each side.
+    fn find_boxes(&self, hair: &Hair, moving: bool, around: &mut Vec<Around>) {
         let points = hair.model.points_per_strand;
-        around.clear();
-        for block in 0..self.last.len() / points {
-            for point in 0..points - 1 {
-                for lane in 0..hair.model.live_lanes(block) {
-                    let segment = number(block, point, points, lane);
-                    let [a, b] = [0, 1].map(|end| {
-                        let index = block * points + point + end;
-                        let here = self.last[index].get(lane);
-                        let there = if moving { here + self.ahead[index].get(lane) } else { here };
-                        [here.min(there), here.max(there)]
-                    });
-                    let more = Vec3::splat(radius(segment) + self.wider[segment as usize]);
-                    let (low, high) = (a[0].min(b[0]) - more, a[1].max(b[1]) + more);
-                    if low.is_finite() && high.is_finite() {
-                        around.push(Around { low, high, segment, strand: (block * LANES + lane) as u32 });
-                    }
-                }
-            }
-        }
+        let segments = hair.model.strand_count.div_ceil(LANES) * LANES * (points - 1);
+        let box_of = |index: usize| {
+            let (row, lane) = (index / LANES, index % LANES);
+            let (block, point) = (row / (points - 1), row % (points - 1));
+            let segment = number(block, point, points, lane);
+            let [a, b] = [0, 1].map(|end| {
+                let index = block * points + point + end;
+                let here = self.last[index].get(lane);
+                let there = if moving { here + self.ahead[index].get(lane) } else { here };
+                [here.min(there), here.max(there)]
+            });
+            let radius = hair.model.radii[segment as usize / LANES].0[lane];
+            let more = if lane < hair.model.live_lanes(block) {
+                Vec3::splat(NEAR * radius + self.wider[segment as usize])
+            } else {
+                Vec3::NAN
+            };
+            let (low, high) = (a[0].min(b[0]) - more, a[1].max(b[1]) + more);
+            Around { low, high, segment, strand: (block * LANES + lane) as u32 }
+        };
+        (0..segments).into_par_iter().with_min_len(CHUNK).map(box_of).collect_into_vec(around);
     }
 }
 

@@ -1,7 +1,6 @@
 //! Pairs of segments that touch or may come to touch in a part of a step.
 
 use glam::Vec3;
-use strandline_base::par::prelude::*;
 use strandline_groom::LANES;
 
 use super::rod_strands::Hair;
@@ -13,8 +12,9 @@ const HELD: f32 = 1.0;
 /// Share of a depth that a part takes back, and the speed \[m/s\] with which it does so at most.
 const TAKEN_BACK: f32 = 0.3;
 const FASTEST_BACK: f32 = 0.1;
-/// Segments that a thread takes at a time.
-const CHUNK: usize = 2048;
+
+/// Inverse mass of both places of a pair over the largest of their points, below which nothing moves them.
+const MOVES: f32 = 1e-6;
 
 /// A point in a part of a step.
 #[derive(Clone, Copy, Default)]
@@ -33,43 +33,6 @@ impl Point {
         let all = [&points[one], &points[one + LANES], &points[other], &points[other + LANES]];
         (all.map(|point| point.start), all.map(|point| point.coast))
     }
-}
-
-/// Replaces `directions` by two unit vectors across the segment at each point.
-pub(super) fn across(points: &[Point], directions: &mut [[Vec3; 2]]) {
-    directions.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, directions)| {
-        for (index, directions) in directions.iter_mut().enumerate() {
-            let segment = chunk * CHUNK + index;
-            let Some(end) = points.get(segment + LANES) else { continue };
-            let along = (end.start - points[segment].start).normalize_or(Vec3::X);
-            let one = along.any_orthonormal_vector();
-            *directions = [one, along.cross(one)];
-        }
-    });
-}
-
-/// False for two segments that stay further apart than a distance \[m\], seen along two directions across the first: where
-/// they are, or if they are moving on all of their way.
-#[inline]
-pub(super) fn may_meet(
-    points: &[Point],
-    directions: &[[Vec3; 2]],
-    segments: [u32; 2],
-    moving: bool,
-    distance: f32,
-) -> bool {
-    let (start, ways) = Point::ends(points, segments);
-    let [one, other] = [start[2] - start[0], start[3] - start[0]];
-    directions[segments[0] as usize].iter().all(|direction| {
-        let (c, d) = (direction.dot(one), direction.dot(other));
-        let (mut low, mut high) = (c.min(d), c.max(d));
-        if moving {
-            let [a, b, c, d] = ways.map(|way| direction.dot(way));
-            low += (c.min(d) - a.max(b)).min(0.0);
-            high += (c.max(d) - a.min(b)).max(0.0);
-        }
-        low <= distance && high >= -distance
-    })
 }
 
 /// Hair in a part of a step, as its pairs are looked at.
@@ -107,7 +70,7 @@ impl<'a> Look<'a> {
         let pair = self.pairs.get(*known).filter(|pair| pair.segments == segments);
         let side = || pair.map(|pair| Vec3::from(pair.normal));
         let place = look(&start, &ways, touch, shares, side);
-        let near = place.map(|place| self.near(segments, places, touch, &place, pair));
+        let near = place.and_then(|place| self.near(segments, places, touch, &place, pair));
         (away, near)
     }
 
@@ -118,20 +81,26 @@ impl<'a> Look<'a> {
         touch: f32,
         place: &Approach,
         pair: Option<&Pair>,
-    ) -> Near {
-        let inverse = |side: usize| {
+    ) -> Option<Near> {
+        let mut most = 0.0_f32;
+        let mut inverse = |side: usize| {
             let (index, lane) = places[side];
             let [one, other] = [index, index + 1].map(|at| self.hair.masses.inverse_mass[at].0[lane]);
             let share = place.shares[side];
+            most = most.max(one).max(other);
             one * (1.0 - share) * (1.0 - share) + other * share * share
         };
         let square = self.time_step * self.time_step;
         let inverse = [inverse(0), inverse(1)];
+        // Nothing moves two places at points that are held.
+        if inverse[0] + inverse[1] <= MOVES * most {
+            return None;
+        }
         let holds = inverse.map(|inverse| if inverse > 0.0 { HELD / (square * inverse) } else { 0.0 });
         let missing = touch - place.gap;
         let (force, slides) =
             pair.map_or((Vec3::ZERO, false), |pair| (turned(pair, place.normal), pair.slides > 0.0));
-        Near {
+        Some(Near {
             segments,
             shares: place.shares,
             normal: place.normal,
@@ -145,7 +114,7 @@ impl<'a> Look<'a> {
             change: Vec3::ZERO,
             slid: slides,
             slides,
-        }
+        })
     }
 }
 
@@ -160,8 +129,11 @@ fn turned(pair: &Pair, normal: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use strandline_body::Random;
+    use strandline_groom::Lanes;
 
+    use super::super::rod_sieve::Across;
     use super::*;
+    use crate::wisps::boxes::Sieve;
 
     #[test]
     fn segments_that_come_to_touch_are_not_left_out() {
@@ -180,11 +152,18 @@ mod tests {
                 points[1].start = points[0].start + vector(0.002);
                 points[LANES + 1].start = points[1].start + along + vector(0.002);
             }
-            let mut directions = vec![[Vec3::ZERO; 2]; points.len()];
-            across(&points, &mut directions);
             let (start, ways) = Point::ends(&points, [0, 1]);
             let touch = 5e-4;
-            let meets = |moving| may_meet(&points, &directions, [0, 1], moving, NEAR * touch + 1e-6);
+            let meets = |moving| {
+                let sieve = Across {
+                    radii: &[Lanes([0.5 * touch; LANES])],
+                    inverse_mass: &[],
+                    points: &points,
+                    wider: &[0.0; 2],
+                    moving,
+                };
+                sieve.may_meet(&sieve.one(0), &sieve.eight([1; LANES]), 1) != 0
+            };
             let shares = nearest(&start);
             left_out += usize::from(!meets(true));
             if look(&start, &ways, touch, shares, || None).is_some() {

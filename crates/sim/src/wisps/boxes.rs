@@ -1,50 +1,17 @@
-//! Pairs of segments whose boxes meet, by cells.
+//! Pairs of segments whose boxes meet: boxes in strips, swept along an axis, eight at a time.
 
-use glam::{IVec3, Vec3, Vec4};
 use strandline_base::par::prelude::*;
+use strandline_groom::LANES;
+use wide::f32x8;
 
-use crate::cells::grid::REACH;
+use super::strips::{Around, Layout, Place};
 
-/// Most cells that a box takes along an axis: of a larger one those about its middle.
-const MOST_CELLS: i32 = 8;
-/// Factors of the hash of a cell \[Teschner2003\].
-const HASH_X: u32 = 73_856_093;
-const HASH_Y: u32 = 19_349_663;
-const HASH_Z: u32 = 83_492_791;
-/// Boxes whose pairs one thread looks for at a time.
+/// Entries that a thread takes at a time.
 const CHUNK: usize = 256;
-/// Entries of buckets that a thread copies at a time.
-const ENTRIES: usize = 4096;
-
-/// A box about the way of a segment.
-#[derive(Clone, Copy, Debug)]
-pub struct Around {
-    /// Corners \[m\].
-    pub low: Vec3,
-    pub high: Vec3,
-    /// Number of the segment, and of its strand.
-    pub segment: u32,
-    pub strand: u32,
-}
-
-/// Cells that boxes take, from the first to the last along each axis.
-#[derive(Clone, Copy, Debug)]
-struct Range {
-    first: IVec3,
-    last: IVec3,
-}
-
-/// Boxes sorted by buckets of cells, and the room for it.
-#[derive(Clone, Debug, Default)]
-pub struct Boxes {
-    ranges: Vec<Range>,
-    /// First box of each bucket.
-    starts: Vec<u32>,
-    /// Indices of boxes, bucket after bucket, rising, and their corners \[m\].
-    order: Vec<u32>,
-    corners: Vec<[Vec4; 2]>,
-    found: Vec<Vec<Met>>,
-}
+/// Bits of eight lanes.
+const ALL: u32 = 0xff;
+/// Groups of eight entries, and boxes, that a thread copies at a time.
+const COPIES: usize = 512;
 
 /// Two segments whose boxes meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,144 +22,185 @@ pub struct Met {
     pub distance: f32,
 }
 
+/// Tests of segments whose boxes meet.
+pub trait Sieve: Sync {
+    /// Numbers of a segment that others are tested against.
+    type One;
+    /// Numbers of eight segments, one in each lane.
+    type Eight: Send + Sync;
+
+    fn one(&self, segment: u32) -> Self::One;
+
+    fn eight(&self, segments: [u32; LANES]) -> Self::Eight;
+
+    /// Bits of those of the segments in some lanes that may be near the one.
+    fn may_meet(&self, one: &Self::One, eight: &Self::Eight, lanes: u32) -> u32;
+
+    /// Distance \[m\] of two segments, the lower number first; none for those that are no pair.
+    fn judge(&self, segments: [u32; 2]) -> Option<f32>;
+}
+
+/// Corners of eight boxes \[m\], by the axes of the layout.
+#[derive(Clone, Copy, Debug)]
+struct Corners {
+    low: [f32x8; 3],
+    high: [f32x8; 3],
+}
+
+/// Scratch of the search, kept.
+#[derive(Clone, Debug, Default)]
+pub struct Boxes {
+    places: Vec<Place>,
+    /// First entry of each bin of each strip.
+    starts: Vec<u32>,
+    /// Box and strip of each entry.
+    order: Vec<[u32; 2]>,
+    corners: Vec<Corners>,
+    found: Vec<Vec<Met>>,
+}
+
+/// Sorted boxes of a search, and how their segments are tested.
+struct Search<'a, S: Sieve> {
+    boxes: &'a [Around],
+    sorted: &'a Boxes,
+    layout: Layout,
+    sieve: &'a S,
+    eights: &'a [S::Eight],
+}
+
 impl Boxes {
-    /// Replaces `pairs` by the segments of all boxes of different strands that meet and have a distance by `judge`, each
-    /// pair once, the lower number first, in rising order. Segments of boxes rise.
-    pub fn pairs(
+    /// Replaces `pairs` by the segments of all boxes of different strands that meet and pass the sieve, each pair once, the
+    /// lower number first, in rising order. Segments of boxes rise; `eights` is scratch.
+    pub fn pairs<S: Sieve>(
         &mut self,
         boxes: &[Around],
-        judge: impl Fn([u32; 2]) -> Option<f32> + Sync,
+        sieve: &S,
+        eights: &mut Vec<S::Eight>,
         pairs: &mut Vec<Met>,
     ) {
         pairs.clear();
-        let Some(per_metre) = cells_per_metre(boxes) else { return };
-        let mut ranges = std::mem::take(&mut self.ranges);
-        boxes.par_iter().map(|one| range(one, per_metre)).collect_into_vec(&mut ranges);
-        let buckets = self.sort(&ranges);
-        let corners = |index: &u32| {
-            let one = &boxes[*index as usize];
-            [one.low.extend(0.0), one.high.extend(0.0)]
-        };
-        self.order.par_iter().with_min_len(ENTRIES).map(corners).collect_into_vec(&mut self.corners);
+        let Some(layout) = Layout::new(boxes) else { return };
+        boxes.par_iter().with_min_len(COPIES).map(|one| layout.place(one)).collect_into_vec(&mut self.places);
+        layout.sort(&self.places, &mut self.starts, &mut self.order);
+        let order = &self.order;
+        let groups = || (0..order.len().div_ceil(LANES)).into_par_iter().with_min_len(COPIES);
+        groups().map(|group| Corners::of(group, order, boxes, &layout)).collect_into_vec(&mut self.corners);
+        groups()
+            .map(|group| {
+                let box_of = |lane: usize| order[(group * LANES + lane).min(order.len() - 1)][0] as usize;
+                sieve.eight(std::array::from_fn(|lane| boxes[box_of(lane)].segment))
+            })
+            .collect_into_vec(eights);
         let mut found = std::mem::take(&mut self.found);
-        found.resize_with(boxes.len().div_ceil(CHUNK), Vec::new);
+        found.resize_with(order.len().div_ceil(CHUNK), Vec::new);
+        let search = Search { boxes, sorted: self, layout, sieve, eights };
         found.par_iter_mut().enumerate().for_each(|(chunk, found)| {
             found.clear();
-            for one in chunk * CHUNK..((chunk + 1) * CHUNK).min(boxes.len()) {
-                self.partners(one, (boxes, &ranges), buckets, &judge, found);
+            for entry in chunk * CHUNK..((chunk + 1) * CHUNK).min(search.sorted.order.len()) {
+                search.partners(entry, found);
             }
         });
         found.iter().for_each(|found| pairs.extend_from_slice(found));
-        (self.ranges, self.found) = (ranges, found);
-    }
-
-    /// Sorts boxes by the buckets of their cells; returns the number of buckets less one.
-    fn sort(&mut self, ranges: &[Range]) -> u32 {
-        let entries: usize = ranges.iter().map(|range| cells(range).count()).sum();
-        let buckets = entries.max(1).next_power_of_two();
-        let mask = buckets as u32 - 1;
-        self.starts.clear();
-        self.starts.resize(buckets + 1, 0);
-        for cell in ranges.iter().flat_map(cells) {
-            self.starts[bucket(cell, mask) as usize + 1] += 1;
-        }
-        for index in 0..buckets {
-            self.starts[index + 1] += self.starts[index];
-        }
-        self.order.clear();
-        self.order.resize(entries, 0);
-        for (index, range) in ranges.iter().enumerate().rev() {
-            for cell in cells(range) {
-                let end = &mut self.starts[bucket(cell, mask) as usize + 1];
-                *end -= 1;
-                self.order[*end as usize] = index as u32;
-            }
-        }
-        // Each end is now the start of its own bucket.
-        self.starts.remove(0);
-        self.starts.push(entries as u32);
-        mask
-    }
-
-    fn partners(
-        &self,
-        one: usize,
-        (boxes, ranges): (&[Around], &[Range]),
-        mask: u32,
-        judge: &impl Fn([u32; 2]) -> Option<f32>,
-        found: &mut Vec<Met>,
-    ) {
-        let (own, first) = (&boxes[one], found.len());
-        let (low, high) = (own.low.extend(0.0), own.high.extend(0.0));
-        for cell in cells(&ranges[one]) {
-            let bucket = bucket(cell, mask) as usize;
-            let entries = self.starts[bucket] as usize..self.starts[bucket + 1] as usize;
-            // Indices rise within a bucket.
-            for (corners, &other) in self.corners[entries.clone()].iter().zip(&self.order[entries]).rev() {
-                let other = other as usize;
-                if other <= one {
-                    break;
-                }
-                // Found in the cell of the higher of both lower corners alone.
-                if (low.cmple(corners[1]) & corners[0].cmple(high)).all()
-                    && boxes[other].strand != own.strand
-                    && ranges[one].first.max(ranges[other].first) == cell
-                    && let segments = [own.segment, boxes[other].segment]
-                    && let Some(distance) = judge(segments)
-                {
-                    found.push(Met { segments, distance });
-                }
-            }
-        }
-        found[first..].sort_unstable_by_key(|met| met.segments);
-        // Two cells of a box may have one bucket.
-        let mut kept = first;
-        for index in first..found.len() {
-            if kept == first || found[kept - 1].segments != found[index].segments {
-                found[kept] = found[index];
-                kept += 1;
-            }
-        }
-        found.truncate(kept);
+        pairs.sort_unstable_by_key(|met| u64::from(met.segments[0]) << 32 | u64::from(met.segments[1]));
+        self.found = found;
     }
 }
 
-/// Cells per metre: a cell is as long as the mean of the longest sides.
-fn cells_per_metre(boxes: &[Around]) -> Option<f32> {
-    let sides: f64 = boxes.iter().map(|one| f64::from((one.high - one.low).max_element())).sum();
-    let mean = (sides / boxes.len() as f64) as f32;
-    (mean > 0.0 && mean.is_finite()).then(|| 1.0 / mean)
+impl Corners {
+    /// Corners of the boxes of a group of entries; lanes behind the last are empty.
+    fn of(group: usize, order: &[[u32; 2]], boxes: &[Around], layout: &Layout) -> Self {
+        let mut low = [[f32::MAX; LANES]; 3];
+        let mut high = [[f32::MIN; LANES]; 3];
+        for (lane, [index, _]) in order[group * LANES..].iter().take(LANES).enumerate() {
+            let one = &boxes[*index as usize];
+            for (row, axis) in layout.axes.into_iter().enumerate() {
+                (low[row][lane], high[row][lane]) = (one.low[axis], one.high[axis]);
+            }
+        }
+        Self { low: low.map(f32x8::new), high: high.map(f32x8::new) }
+    }
 }
 
-fn range(one: &Around, per_metre: f32) -> Range {
-    let most = REACH * per_metre.min(1e5);
-    let cell =
-        |point: Vec3| (point * per_metre).clamp(Vec3::splat(-most), Vec3::splat(most)).floor().as_ivec3();
-    let (first, last) = (cell(one.low), cell(one.high));
-    let middle = cell(0.5 * (one.low + one.high));
-    let half = IVec3::splat(MOST_CELLS / 2);
-    Range { first: first.max(middle - half), last: last.min(middle + half) }
+impl<S: Sieve> Search<'_, S> {
+    /// Finds the pairs of an entry with those behind it in its strip.
+    fn partners(&self, entry: usize, found: &mut Vec<Met>) {
+        let [index, strip] = self.sorted.order[entry];
+        let (own, place) = (&self.boxes[index as usize], &self.sorted.places[index as usize]);
+        let end = self.sorted.starts[self.layout.bucket(strip, place.last_bin) + 1] as usize;
+        let from = entry + 1;
+        if from >= end {
+            return;
+        }
+        let one = self.sieve.one(own.segment);
+        let low = self.layout.axes.map(|axis| f32x8::splat(own.low[axis]));
+        let high = self.layout.axes.map(|axis| f32x8::splat(own.high[axis]));
+        for group in from / LANES..end.div_ceil(LANES) {
+            let begin = group * LANES;
+            // Entries from `from` to `end`.
+            let (before, behind) = (from.saturating_sub(begin), (begin + LANES).saturating_sub(end));
+            let mut lanes = (ALL << before) & (ALL >> behind);
+            lanes &= self.sorted.corners[group].meet(&low, &high);
+            if lanes != 0 {
+                lanes = self.sieve.may_meet(&one, &self.eights[group], lanes);
+            }
+            while lanes != 0 {
+                self.judge(index, strip, begin + lanes.trailing_zeros() as usize, found);
+                lanes &= lanes - 1;
+            }
+        }
+    }
+
+    #[inline]
+    fn judge(&self, index: u32, strip: u32, entry: usize, found: &mut Vec<Met>) {
+        let other = self.sorted.order[entry][0];
+        let [one, two] = [index, other].map(|index| &self.boxes[index as usize]);
+        let places = [index, other].map(|index| &self.sorted.places[index as usize]);
+        // Found in the first strip alone that both take.
+        if one.strand == two.strand || self.layout.first_of_both(places) != strip {
+            return;
+        }
+        let segments = [one.segment.min(two.segment), one.segment.max(two.segment)];
+        if let Some(distance) = self.sieve.judge(segments) {
+            found.push(Met { segments, distance });
+        }
+    }
 }
 
-fn cells(range: &Range) -> impl Iterator<Item = IVec3> + use<> {
-    let Range { first, last } = *range;
-    (first.z..=last.z).flat_map(move |z| {
-        (first.y..=last.y).flat_map(move |y| (first.x..=last.x).map(move |x| IVec3::new(x, y, z)))
-    })
-}
-
-/// Bucket of a cell [Teschner2003]. Products are added: joined by exclusive or, as published, cells on both sides of the
-/// origin share buckets.
-fn bucket(cell: IVec3, mask: u32) -> u32 {
-    let [x, y, z] = cell.to_array().map(|number| number as u32);
-    x.wrapping_mul(HASH_X).wrapping_add(y.wrapping_mul(HASH_Y)).wrapping_add(z.wrapping_mul(HASH_Z)) & mask
+impl Corners {
+    /// Bits of the boxes that meet one.
+    #[inline]
+    fn meet(&self, low: &[f32x8; 3], high: &[f32x8; 3]) -> u32 {
+        let axis = |axis: usize| self.low[axis].simd_le(high[axis]) & low[axis].simd_le(self.high[axis]);
+        (axis(0) & axis(1) & axis(2)).to_bitmask()
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
     use strandline_body::Random;
 
     use super::*;
+
+    /// Takes boxes as they are; of segments of one sort.
+    struct Boxed(fn([u32; 2]) -> Option<f32>);
+
+    impl Sieve for Boxed {
+        type One = ();
+        type Eight = ();
+
+        fn one(&self, _: u32) {}
+
+        fn eight(&self, _: [u32; LANES]) {}
+
+        fn may_meet(&self, (): &(), (): &(), lanes: u32) -> u32 {
+            lanes
+        }
+
+        fn judge(&self, segments: [u32; 2]) -> Option<f32> {
+            self.0(segments)
+        }
+    }
 
     impl Around {
         fn meets(&self, other: &Self) -> bool {
@@ -222,7 +230,7 @@ mod tests {
         let mut found = Vec::new();
         let mut room = Boxes::default();
         for _ in 0..2 {
-            room.pairs(&boxes, |_| Some(0.0), &mut found);
+            room.pairs(&boxes, &Boxed(|_| Some(0.0)), &mut Vec::new(), &mut found);
             assert!(expected.len() > 100);
             assert_eq!(found.iter().map(|met| met.segments).collect::<Vec<_>>(), expected);
         }
@@ -240,16 +248,16 @@ mod tests {
                 let meets = |one: &Around, other: &Around| one.segment < other.segment && one.meets(other);
                 let expected: usize =
                     few.iter().map(|one| few.iter().filter(|other| meets(one, other)).count()).sum();
-                room.pairs(&few, |_| Some(0.0), &mut found);
+                room.pairs(&few, &Boxed(|_| Some(0.0)), &mut Vec::new(), &mut found);
                 assert_eq!(found.len(), expected, "{count} boxes, seed {seed}");
             }
         }
-        room.pairs(&boxes, |_| Some(0.0), &mut found);
-        let odd = |segments: [u32; 2]| (segments[0] % 2 == 1).then_some(3.0);
-        room.pairs(&boxes, odd, &mut found);
+        room.pairs(&boxes, &Boxed(|_| Some(0.0)), &mut Vec::new(), &mut found);
+        let odd = Boxed(|segments| (segments[0] % 2 == 1).then_some(3.0));
+        room.pairs(&boxes, &odd, &mut Vec::new(), &mut found);
         expected.retain(|segments| segments[0] % 2 == 1);
         assert_eq!(found.iter().map(|met| met.segments).collect::<Vec<_>>(), expected);
-        room.pairs(&[], |_| Some(0.0), &mut found);
+        room.pairs(&[], &odd, &mut Vec::new(), &mut found);
         assert!(found.is_empty());
     }
 }

@@ -6,6 +6,10 @@ use strandline_groom::LANES;
 
 use crate::SimError;
 
+/// Share of its push by which a pair yields in a round: wisps that cannot all have their room press each other with a force
+/// that stays bounded.
+const YIELDS: f32 = 5e-3;
+
 /// Memory of a pair from one part of a step to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -113,17 +117,45 @@ impl Near {
         }
         let along = self.normal.dot(way);
         let old = self.normal.dot(self.force);
-        let push = (old + self.stiffness * (self.needs - along)).max(0.0);
+        let push = (old * (1.0 - YIELDS) + self.stiffness * (self.needs - along)).max(0.0);
         let aside = way - self.normal * along;
         let held = self.force - self.normal * old - aside * self.stiffness;
         let size = held.length();
         let limit = push * if self.slid { friction.slides } else { friction.sticks };
         self.slides = size > limit;
-        let rubs =
-            if self.slides { held * (push * friction.slides.min(friction.sticks) / size) } else { held };
+        let rubs = if self.slides { held * (limit / size) } else { held };
         let force = self.normal * push + rubs;
         let given = force * 2.0 - self.force;
         self.change = given - self.given;
         (self.given, self.force) = (given, force);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pair_that_never_gets_its_room_presses_with_a_bounded_force() {
+        let mut near = Near {
+            segments: [0, 8],
+            shares: [0.5; 2],
+            normal: Vec3::Y,
+            touch: 2e-3,
+            gap: 1e-3,
+            needs: 3e-4,
+            holds: [0.1; 2],
+            stiffness: 0.05,
+            force: Vec3::ZERO,
+            given: Vec3::ZERO,
+            change: Vec3::ZERO,
+            slid: false,
+            slides: false,
+        };
+        for _ in 0..5000 {
+            near.answer(Vec3::ZERO, Friction { sticks: 0.3, slides: 0.25 });
+        }
+        let bound = near.stiffness * near.needs / YIELDS;
+        assert!((near.force.y / bound - 1.0).abs() < 1e-3, "{} N, bound {bound}", near.force.y);
     }
 }

@@ -3,8 +3,9 @@
 use glam::Vec3;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
-use super::boxes::{Around, Boxes};
+use super::boxes::{Boxes, Sieve};
 use super::place::{between, nearest};
+use super::strips::Around;
 
 /// Hair at rest as radii are measured on it, shapes `[block][point]` of lanes.
 pub(crate) struct AtRest<'a> {
@@ -53,12 +54,7 @@ impl AtRest<'_> {
             }
         }
         let mut pairs = Vec::new();
-        let distance = |[one, other]: [u32; 2]| {
-            let ([a, b], [c, d]) = (self.ends(one), self.ends(other));
-            let ends = [a, b, c, d];
-            Some(between(&ends, nearest(&ends)).length())
-        };
-        Boxes::default().pairs(&boxes, distance, &mut pairs);
+        Boxes::default().pairs(&boxes, self, &mut Vec::new(), &mut pairs);
         for met in pairs {
             for segment in met.segments {
                 let radius = &mut radii[segment as usize / LANES].0[segment as usize % LANES];
@@ -71,5 +67,25 @@ impl AtRest<'_> {
     fn ends(&self, segment: u32) -> [Vec3; 2] {
         let (index, lane) = (segment as usize / LANES, segment as usize % LANES);
         [self.positions[index].get(lane), self.positions[index + 1].get(lane)]
+    }
+}
+
+/// All pairs have a distance.
+impl Sieve for AtRest<'_> {
+    type One = ();
+    type Eight = ();
+
+    fn one(&self, _: u32) {}
+
+    fn eight(&self, _: [u32; LANES]) {}
+
+    fn may_meet(&self, (): &(), (): &(), lanes: u32) -> u32 {
+        lanes
+    }
+
+    fn judge(&self, [one, other]: [u32; 2]) -> Option<f32> {
+        let ([a, b], [c, d]) = (self.ends(one), self.ends(other));
+        let ends = [a, b, c, d];
+        Some(between(&ends, nearest(&ends)).length())
     }
 }

@@ -1,6 +1,6 @@
 //! Forces on a strand and their derivatives: the system of a Newton step.
 
-use super::front::{Bends, Front, ROWS, Spring, UNKNOWNS};
+use super::front::{ALL, Bends, Front, ROWS, Spring, UNKNOWNS};
 use super::joint::{Joint, Slope};
 use super::real::{Real, Vector};
 use super::rod::{Node, Pull, Work};
@@ -10,8 +10,8 @@ use super::rounds::Push;
 const ROUNDING: f64 = 1e-6;
 
 impl<R: Real> Work<R> {
-    /// Assembles the gradient and the Hessian, and eliminates from root to tip; with `turns` 0 only the Hessian's
-    /// positive part. Returns the largest force \[N\] of a solid on each strand, at `first` also of solids that may come to
+    /// Assembles the gradient and the Hessian, and eliminates from root to tip. Moments turn with the sections where they
+    /// are less than `turns` of those of inertia: [`ALL`], or with 0 none, which leaves the Hessian's positive part. Returns the largest force \[N\] of a solid on each strand, at `first` also of solids that may come to
     /// press, and 1 where the eliminated matrix is positive definite, else 0.
     #[inline(always)]
     pub(super) fn factorise(
@@ -40,7 +40,9 @@ impl<R: Real> Work<R> {
                 add_push(&mut front, push);
             }
             if index + 1 < last {
-                self.add_joint(&mut front, index + 1, &rod[index + 1], stiffer, turns);
+                let node = &rod[index + 1];
+                let inertia = node.mass * per_square * node.length * node.length;
+                self.add_joint(&mut front, index + 1, node, stiffer, (turns, inertia));
             } else {
                 front.clear_above();
             }
@@ -152,9 +154,16 @@ impl<R: Real> Work<R> {
     }
 
     /// Moments of bends and twist with the part of their derivative that is positive or turns with the sections, and
-    /// the segment above the joint.
+    /// the segment above the joint. `inertia` is the moment by which inertia resists a radian.
     #[inline(always)]
-    fn add_joint(&self, front: &mut Front<R>, index: usize, node: &Node<R>, stiffer: R, turns: R) {
+    fn add_joint(
+        &self,
+        front: &mut Front<R>,
+        index: usize,
+        node: &Node<R>,
+        stiffer: R,
+        (turns, inertia): (R, R),
+    ) {
         let (lower, upper) = (&self.segments[index - 1], &self.segments[index]);
         let joint = Joint::new(lower, upper);
         let [first, second, twist] = joint.slopes(lower, upper);
@@ -164,8 +173,11 @@ impl<R: Real> Work<R> {
             Spring::new(second, stiffness[1] * stiffer, rest[1] - strains[1]),
             Spring::new(twist, stiffness[2] * stiffer, rest[2] - strains[2]),
         ];
-        let turns = -turns;
-        let turnings = joint.turnings(lower, upper, [springs[0].moment * turns, springs[1].moment * turns]);
+        let moments = [springs[0].moment, springs[1].moment];
+        let most = moments.into_iter().fold(R::of(0.0), |most, one| most.or_more(one.or_more(-one)));
+        let small = (turns * inertia - most).choose(R::of(-1.0), R::of(-0.0));
+        let share = (turns - R::of(0.5 * ALL)).choose(R::of(-1.0), small);
+        let turnings = joint.turnings(lower, upper, moments.map(|moment| moment * share));
         let (pull, stretch) = self.tension(index, node);
         front.set_joint(&Bends { springs, turnings, stretch, pull });
     }

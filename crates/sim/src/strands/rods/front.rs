@@ -8,6 +8,8 @@ use super::real::{Real, Vector};
 pub const UNKNOWNS: usize = 4;
 /// Unknowns that a joint touches: those of two nodes and the displacement of a third.
 pub const ROWS: usize = 11;
+/// Share of inertia's moments that no moment exceeds.
+pub const ALL: f64 = 1e30;
 const ENTRIES: usize = ROWS * (ROWS + 1) / 2;
 
 /// Calls a method once for each row, with the row as a constant, so that its loops unroll.

@@ -1,6 +1,6 @@
 //! A strand's nodes and edges, and one implicit step of it.
 
-use super::front::{Factors, UNKNOWNS, substitute};
+use super::front::{ALL, Factors, UNKNOWNS, substitute};
 use super::joint::{Joint, Segment};
 use super::real::{Real, Vector};
 
@@ -198,10 +198,11 @@ impl<R: Real> Work<R> {
         let mut steps = 0;
         while steps < settings.newton_steps && unsolved.any_positive() {
             let (pressed, mut sound) =
-                self.factorise(rod, (pulls, &[]), stiffer, settings.time_step, steps == 0, R::of(1.0));
+                self.factorise(rod, (pulls, &[]), stiffer, settings.time_step, steps == 0, R::of(ALL));
             if unsolved.choose(R::of(1.0) - sound, R::of(0.0)).any_positive() {
+                let turns = sound.choose(R::of(ALL), R::of(0.0));
                 (_, sound) =
-                    self.factorise(rod, (pulls, &[]), stiffer, settings.time_step, steps == 0, sound);
+                    self.factorise(rod, (pulls, &[]), stiffer, settings.time_step, steps == 0, turns);
             }
             touched = unsolved.choose(pressed, touched);
             substitute(&self.factors, &mut self.step);

@@ -1,7 +1,7 @@
 //! Answers of a strand to the forces of others: Newton steps with what holds its points, and rounds with their factors
 //! kept.
 
-use super::front::{ROWS, UNKNOWNS, substitute};
+use super::front::{ALL, ROWS, UNKNOWNS, substitute};
 use super::real::{Real, Vector};
 use super::rod::{Node, Pull, StepSettings, Work};
 
@@ -37,6 +37,10 @@ pub struct Turned<R> {
 /// Largest turn of a segment \[rad\] in a step after which tensions are kept.
 const CALM: f64 = 0.1;
 
+/// Moments of strands with pairs that turn with the sections, over those of inertia. Larger ones may keep a system from
+/// being positive; the stiffness that holds nodes hides this, and rounds with such factors grow.
+const SMALL: f64 = 0.3;
+
 impl<R: Real> Work<R> {
     /// A Newton step of the strands with `open` above 0, under the pushes. Those with `meets` above 0 keep tensions.
     #[inline(always)]
@@ -50,9 +54,11 @@ impl<R: Real> Work<R> {
     ) -> Turned<R> {
         let stiffer = R::of(1.0) + settings.viscous;
         let step = settings.time_step;
-        let (pressed, mut sound) = self.factorise(rod, (pulls, pushes), stiffer, step, first, R::of(1.0));
+        let turns = meets.choose(R::of(SMALL), R::of(ALL));
+        let (pressed, mut sound) = self.factorise(rod, (pulls, pushes), stiffer, step, first, turns);
         if open.choose(R::of(1.0) - sound, R::of(0.0)).any_positive() {
-            (_, sound) = self.factorise(rod, (pulls, pushes), stiffer, step, first, sound);
+            let turns = sound.choose(turns, R::of(0.0));
+            (_, sound) = self.factorise(rod, (pulls, pushes), stiffer, step, first, turns);
         }
         substitute(&self.factors, &mut self.step);
         self.begin_tensions(rod, sound.choose(meets.choose(open, R::of(0.0)), R::of(0.0)));
