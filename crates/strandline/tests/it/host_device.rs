@@ -250,6 +250,35 @@ fn a_host_that_never_waits_loads_any_hair_and_carries_it_over_a_jump() {
     assert_eq!(gpu.waits(), waits, "nothing has waited");
 }
 
+/// Frames lie between two steps of a head that turns: roots are where the head has them at that time, as on the host, and
+/// no frame waits for them.
+#[test]
+fn a_frame_between_two_steps_of_a_moving_head_waits_for_nothing() {
+    let Some(gpu) = gpu() else { return };
+    let mut scene = scene();
+    // Straight lines between two such steps leave the head by millimetres.
+    (scene.simulation.time_step, scene.motion.name) = (0.07, MotionName::Shake);
+    let loaded = || Prepared::new(&scene).unwrap();
+    let mut hair = FrameLoop::with_device(loaded(), &gpu).unwrap();
+    let mut own = FrameLoop::open(loaded(), Backend::Cpu).unwrap();
+    let view = texture(&gpu, SIZE).create_view(&Default::default());
+    let each = own.points().unwrap().len() / own.strand_count();
+    let waits = gpu.waits();
+    let mut farthest = 0.0_f32;
+    for _ in 0..10 {
+        pass(&mut hair);
+        pass(&mut own);
+        hair.draw_to(&view, FORMAT).unwrap();
+        let (found, expected) = (points(&mut hair), own.points().unwrap());
+        for (found, expected) in found.chunks(each).zip(expected.chunks(each)) {
+            farthest = (0..2).map(|point| found[point].distance(expected[point])).fold(farthest, f32::max);
+        }
+    }
+    assert_eq!(gpu.waits(), waits, "nothing has waited");
+    // The order of operations differs between the backends.
+    assert!(farthest < 1e-5, "a root lies {farthest} m off");
+}
+
 /// The device is lost while hair is in a hand: the CPU goes on with the same hair.
 #[test]
 fn a_host_that_loses_its_device_goes_on_on_the_cpu() {
