@@ -88,7 +88,7 @@ impl Stoppable {
         FINISHED.store(true, SeqCst);
     }
 
-    /// The request to stop, if there was any.
+    /// Fails where a person or the system has asked the program to stop; `done` of `of` are finished.
     pub fn check(&self, done: u64, of: u64, what: &'static str) -> Result<(), Stopped> {
         match ASKED.load(SeqCst) {
             0 => Ok(()),

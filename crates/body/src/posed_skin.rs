@@ -298,7 +298,7 @@ impl PosedSkin {
         SkinPlace { distance: side * away, normal: normal.normalize_or(Vec3::Y), triangle }
     }
 
-    /// Corners of a triangle at the end, that at the place of a vertex first.
+    /// Corners of a triangle at the end of the step, from the one that coincides with `vertex` on.
     pub(crate) fn corners_from(&self, triangle: u32, vertex: u32) -> [Vec3; 3] {
         let (at, first) = (self.solid.triangles[triangle as usize], self.solid.welded[vertex as usize]);
         let own = at.iter().position(|corner| self.solid.welded[*corner as usize] == first).unwrap_or(0);
