@@ -7,8 +7,8 @@ use strandline_gpu::{Declaration, Dispatches, Gpu, GpuError, Scan};
 use super::buffers::Buffers;
 use super::stage::{StageKernels, Target};
 use super::{
-    advance, between, constrain, gather, integrate, lengths_alone, mark, pose_roots, shelter, slide, solve_pressure,
-    solve_rods, splat,
+    advance, between, constrain, gather, integrate, lengths_alone, mark, pose_roots, shelter, slide,
+    solve_pressure, solve_rods, splat,
 };
 use crate::Model;
 use crate::step::Stage;
