@@ -246,7 +246,7 @@ impl Search<'_> {
         lies.unwrap_or(0.0) - (fit / PIECE).min(MOST) - against - unit
     }
 
-    /// The place for which most speaks.
+    /// The placing with the most evidence.
     fn best(&self, tried: Vec<(Placing, f32)>) -> Option<FoundPlacing> {
         let mut found: Vec<(f32, Placing, f32)> =
             tried.into_iter().map(|(placing, fit)| (self.evidence(&placing, fit), placing, fit)).collect();
