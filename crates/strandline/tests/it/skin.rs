@@ -15,7 +15,7 @@ use strandline::{
 };
 
 /// A sheet 20 cm wide in the plane y = 0, facing up, and hair that stands on it.
-fn sheet() -> (Mesh, Groom, Guides) {
+pub fn sheet() -> (Mesh, Groom, Guides) {
     let positions = (0..21 * 21).map(|index| vec3((index % 21) as f32, 0.0, (index / 21) as f32) * 0.01);
     let positions = positions.map(|place| place - vec3(0.1, 0.0, 0.1)).collect();
     let cell = |index: u32| {
@@ -33,7 +33,7 @@ fn sheet() -> (Mesh, Groom, Guides) {
 }
 
 /// The hair without weight on the sheet, which it does not hit.
-fn hair(mesh: &Mesh, groom: &Groom) -> Hair {
+pub fn scene() -> Scene {
     let mut scene = Scene::default();
     scene.simulation.gravity = Vec3::ZERO;
     (scene.groom.file, scene.body.file) = (Some("hair".into()), Some("sheet".into()));
@@ -41,13 +41,21 @@ fn hair(mesh: &Mesh, groom: &Groom) -> Hair {
     (scene.groom.up, scene.body.up) = (Up::Y, Up::Y);
     (scene.groom.points_per_strand, scene.body.solid) = (8, false);
     scene.motion.name = MotionName::Still;
-    let sources = Sources::default().with_groom("hair", groom.clone()).with_mesh("sheet", mesh.clone());
-    let prepared = Prepared::from_sources(&scene, &sources).unwrap();
+    scene
+}
+
+/// Hair and sheet of [`scene`].
+pub fn sources(mesh: &Mesh, groom: &Groom) -> Sources {
+    Sources::default().with_groom("hair", groom.clone()).with_mesh("sheet", mesh.clone())
+}
+
+fn hair(mesh: &Mesh, groom: &Groom) -> Hair {
+    let prepared = Prepared::from_sources(&scene(), &sources(mesh, groom)).unwrap();
     Hair::from_prepared(prepared, Backend::Cpu).unwrap()
 }
 
 /// The sheet bent about a cylinder through an angle at its edge.
-fn bent(place: Vec3, angle: f32) -> Vec3 {
+pub fn bent(place: Vec3, angle: f32) -> Vec3 {
     if angle == 0.0 {
         return place;
     }
