@@ -82,8 +82,7 @@ impl Stoppable {
         Self(())
     }
 
-    /// The work is done and written: a request that comes now finds nothing to stop, and the program ends as it
-    /// would without.
+    /// Marks the work as done and written: a request to stop that comes later has no effect.
     pub fn finish(self) {
         FINISHED.store(true, SeqCst);
     }

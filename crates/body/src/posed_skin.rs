@@ -203,8 +203,8 @@ impl PosedSkin {
         self.at_least_about(point, NONE, 0.0).0
     }
 
-    /// The same by a search that begins at a triangle near the point, and a triangle nearer to it. Bounds of no more than
-    /// `enough` \[m\] are not looked for: 0 where that triangle is so near already.
+    /// As [`Self::at_least`], by a search that begins at the triangle `before`; also returns the triangle it ended at. The bound
+    /// is 0, without a search, where `before` alone brings it to `enough` \[m\] or less.
     pub fn at_least_about(&self, point: Vec3, before: u32, enough: f32) -> (f32, u32) {
         if enough > 0.0
             && self.square_from(before, point).is_some_and(|squared| AT_LEAST * squared.sqrt() <= enough)

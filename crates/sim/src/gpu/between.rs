@@ -69,8 +69,8 @@ pub fn read_between(
 }
 
 mirror! {
-    /// Mirrors `Moment` in between.wesl.
-    struct Moment {
+    /// Mirrors `CarryInputs` in between.wesl.
+    struct CarryInputs {
         pub share: f32,
         pub points_per_strand: u32,
         pub point_count: u32,
@@ -89,7 +89,7 @@ mirror! {
 kernel! {
     /// One thread is one point.
     struct CarryPoints in "between" (super::linked::BETWEEN), entry "carry_points" {
-        0 moment: Read Moment,
+        0 inputs: Read CarryInputs,
         1 motions: Read RootMotion,
         2 before: Read f32,
         3 after: Read f32,
@@ -107,7 +107,7 @@ pub(super) fn declaration() -> Declaration {
 #[derive(Debug)]
 pub struct PointCarrier {
     kernel: Kernel<CarryPoints<'static>>,
-    moment: Buffer<Moment>,
+    inputs: Buffer<CarryInputs>,
     motions: Buffer<RootMotion>,
 }
 
@@ -119,7 +119,7 @@ impl PointCarrier {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self {
             kernel: Kernel::new(gpu, &[])?,
-            moment: Buffer::new(gpu, "a moment", 1)?,
+            inputs: Buffer::new(gpu, "inputs of carried points", 1)?,
             motions: Buffer::new(gpu, "motions of roots", 1)?,
         })
     }
@@ -146,14 +146,14 @@ impl PointCarrier {
         }
         self.motions.write(&motions)?;
         let point_count = carried.len() / 3;
-        self.moment.write(&[Moment {
+        self.inputs.write(&[CarryInputs {
             share,
             points_per_strand: points_per_strand as u32,
             point_count: point_count as u32,
             last_motion: motions.len() as u32 - 1,
         }])?;
-        let (moment, motions) = (&self.moment, &self.motions);
-        let bound = self.kernel.bind(gpu, &CarryPoints { moment, motions, before, after, carried })?;
+        let (inputs, motions) = (&self.inputs, &self.motions);
+        let bound = self.kernel.bind(gpu, &CarryPoints { inputs, motions, before, after, carried })?;
         gpu.ask("points between two states", || {
             let mut recorder = Recorder::new(gpu, None);
             recorder.stage("between", &[bound.over(point_count)]);
