@@ -13,7 +13,7 @@ use strandline_base::{choices, settings};
 pub use lobes::{LOBES, Lobes};
 pub use moments::MOMENTS;
 pub(crate) use table::terms_along;
-pub use table::{AROUND, ENTRIES, LEVELS, Met, Pigments, Seen, Table};
+pub use table::{AROUND, ENTRIES, EyeLookUp, LEVELS, Met, Pigments, Table};
 
 /// Absorption per fibre radius of one unit of eumelanin and of pheomelanin \[d'Eon2011\].
 const EUMELANIN: DVec3 = DVec3::new(0.419, 0.697, 1.37);

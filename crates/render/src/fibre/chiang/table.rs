@@ -59,7 +59,7 @@ pub enum Pigments {
 
 /// Table look-ups of one point of hair that all lights share.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub struct EyeLookUp {
     /// Inclination of the eye \[rad\], its sine, and one less the square of that.
     angle: f32,
     sine: f32,
@@ -71,7 +71,7 @@ pub struct Seen {
     even: bool,
 }
 
-impl Seen {
+impl EyeLookUp {
     /// For the sine of the eye's inclination and a multiple of the pigment.
     #[inline]
     pub fn new(sine: f32, pigments: Pigments) -> Self {
@@ -164,19 +164,19 @@ impl Table {
     /// highlights.
     #[inline]
     pub fn scatter(&self, eye: f32, light: f32, turn: f32, pigments: Pigments, shift: f32) -> Vec3 {
-        self.shown(&Seen::new(eye, pigments), light, turn, shift)
+        self.shown(&EyeLookUp::new(eye, pigments), light, turn, shift)
     }
 
     /// [`Table::scatter`] of many lights that one point shows.
     #[inline]
-    pub fn shown(&self, seen: &Seen, light: f32, turn: f32, shift: f32) -> Vec3 {
+    pub fn shown(&self, seen: &EyeLookUp, light: f32, turn: f32, shift: f32) -> Vec3 {
         let [r, tt, trt] = self.by_path(seen, &Met::new(light), turn, shift);
         r + tt + trt
     }
 
     /// [`Table::shown`] of R, TT and TRT.
     #[inline]
-    pub fn by_path(&self, seen: &Seen, met: &Met, turn: f32, shift: f32) -> [Vec3; 3] {
+    pub fn by_path(&self, seen: &EyeLookUp, met: &Met, turn: f32, shift: f32) -> [Vec3; 3] {
         self.by_path_along(&self.entries, seen, met, turn, shift)
     }
 
@@ -185,7 +185,7 @@ impl Table {
     pub(crate) fn by_path_along(
         &self,
         terms: &[Vec4],
-        seen: &Seen,
+        seen: &EyeLookUp,
         met: &Met,
         turn: f32,
         shift: f32,
@@ -221,7 +221,7 @@ impl Table {
 
     /// Shares of light that go as R, TT and TRT.
     #[inline]
-    pub fn shares(&self, seen: &Seen) -> [Vec3; 3] {
+    pub fn shares(&self, seen: &EyeLookUp) -> [Vec3; 3] {
         let [first, second] = if seen.even {
             self.even_shares(seen.row, seen.levels[0])
         } else {
@@ -245,12 +245,12 @@ impl Table {
     /// The fibre's moments (see `moments.rs`) for the sine of the eye's inclination and a multiple of the pigment.
     #[inline]
     pub fn moments(&self, eye: f32, pigments: Pigments) -> [Vec4; MOMENTS] {
-        self.seen_moments(&Seen::new(eye, pigments))
+        self.seen_moments(&EyeLookUp::new(eye, pigments))
     }
 
     /// [`Table::moments`] as the eye sees a fibre.
     #[inline]
-    pub fn seen_moments(&self, seen: &Seen) -> [Vec4; MOMENTS] {
+    pub fn seen_moments(&self, seen: &EyeLookUp) -> [Vec4; MOMENTS] {
         if seen.even {
             self.even_moments(seen.angle, seen.levels[0])
         } else {
