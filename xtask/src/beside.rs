@@ -1,6 +1,7 @@
 //! Lints and documentation of our crates from the dependencies that are built for the tests. `cargo clippy` and
 //! `cargo doc` check all dependencies once more, which takes as long as everything that they say of our crates. Lints
-//! without GPUs and window run here too, with the features that other crates have for the whole program.
+//! without GPUs and window run here too, with the features that other crates have for the whole program. Tests and
+//! examples are compiled by clippy itself, which is rustc with lints: they are read once.
 //!
 //! Cargo calls [`compile`] in place of rustc for crates of the workspace (`RUSTC_WORKSPACE_WRAPPER`). Cargo keeps what
 //! was compiled this way apart from what rustc compiled alone: this is for a fresh checkout, as in CI.
@@ -14,6 +15,9 @@ use crate::cargo::{compile_through, root, wrapper};
 /// Crates in whose loops the tests spend their time. As one unit they compile 1.4 times as long and run up to a quarter
 /// faster: nothing is inlined across units. That pays where all tests run once, not where somebody edits them.
 const LOOPS: [&str; 3] = ["strandline_body", "strandline_sim", "strandline_render"];
+
+/// Crates whose own tests run for less time than it takes to optimise them.
+const SHORT: [&str; 3] = ["strandline_checks", "strandline_cli", "strandline_viewer"];
 
 /// Set for the copy of this program that cargo calls.
 const CALLED: &str = "STRANDLINE_COMPILES_AND_LINTS";
@@ -82,8 +86,8 @@ pub fn is_called() -> bool {
         && std::env::args().nth(1).is_some_and(|word| Path::new(&word).file_stem() == Some("rustc".as_ref()))
 }
 
-/// Compiles a crate as rustc would, then lints it, then documents a library or a program. A crate with features is linted
-/// without them first: cargo begins with those that depend on it as soon as rustc knows its items.
+/// Compiles a library or a program as rustc would, then lints and documents it; compiles all else with lints. A crate with
+/// features is linted without them first: cargo begins with those that depend on it as soon as rustc knows its items.
 pub fn compile() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(2).collect();
     let out = root().join(FOLDER).join("out");
@@ -92,22 +96,28 @@ pub fn compile() -> ExitCode {
         words.extend(more.iter().map(|&word| word.to_owned()));
         words
     };
-    let units = if has_loops(&words) { &["-C", "codegen-units=1"][..] } else { &[] };
-    let mut commands = vec![(rustc, with(words.clone(), units))];
-    let is_documented = is_crate(&words) && is_documented(&words);
-    if is_crate(&words) {
+    let settings = settings(&words);
+    if is_crate(&words) && !is_documented(&words) {
+        return run([("clippy-driver".to_owned(), with(with(words, settings), &["-D", "warnings"]))]);
+    }
+    let mut commands = vec![(rustc, with(words.clone(), settings))];
+    let is_documented = is_crate(&words);
+    if is_documented {
         let metadata = with(elsewhere(&words, &out), &["--emit=metadata", "-D", "warnings"]);
         commands.push(("clippy-driver".to_owned(), metadata));
-        if is_documented {
-            let private = if is_program(&words) { &["--document-private-items"][..] } else { &[] };
-            let documented = with(with(elsewhere(&words, &out), &["-D", "warnings"]), private);
-            commands.push(("rustdoc".to_owned(), documented));
-        }
+        let private = if is_program(&words) { &["--document-private-items"][..] } else { &[] };
+        let documented = with(with(elsewhere(&words, &out), &["-D", "warnings"]), private);
+        commands.push(("rustdoc".to_owned(), documented));
     }
     let bare = is_documented.then(|| without_features(&words, &manifest(), &out.with_file_name("bare")));
     if let Some(bare) = bare.flatten() {
         commands.insert(0, ("clippy-driver".to_owned(), with(bare, &["--emit=metadata", "-D", "warnings"])));
     }
+    run(commands)
+}
+
+/// Runs commands one after the other as long as they succeed.
+fn run(commands: impl IntoIterator<Item = (String, Vec<String>)>) -> ExitCode {
     for (program, words) in commands {
         match Command::new(&program).args(words).status() {
             Ok(status) if status.success() => {}
@@ -127,10 +137,16 @@ fn manifest() -> String {
     std::fs::read_to_string(Path::new(&folder).join("Cargo.toml")).unwrap_or_default()
 }
 
-/// True for a library of [`LOOPS`], and not for its own tests.
-fn has_loops(words: &[String]) -> bool {
-    let is_one = |pair: &[String]| pair[0] == "--crate-name" && LOOPS.contains(&pair[1].as_str());
-    words.windows(2).any(is_one) && !words.iter().any(|word| word == "--test")
+/// Settings of the compiler in place of those of the profile.
+fn settings(words: &[String]) -> &'static [&'static str] {
+    let is_of = |names: &[&str]| {
+        words.windows(2).any(|pair| pair[0] == "--crate-name" && names.contains(&pair[1].as_str()))
+    };
+    match words.iter().any(|word| word == "--test") {
+        false if is_of(&LOOPS) => &["-C", "codegen-units=1"],
+        true if is_of(&SHORT) => &["-C", "opt-level=0"],
+        _ => &[],
+    }
 }
 
 /// True where a crate is compiled; cargo also asks rustc about itself.
@@ -272,8 +288,14 @@ mod tests {
     #[test]
     fn questions_of_cargo_are_no_crates() {
         assert!(!is_crate(&words("-vV")));
-        assert!(has_loops(&words("--crate-name strandline_sim --crate-type lib")));
-        assert!(!has_loops(&words("--crate-name strandline_sim --test")) && !has_loops(&words("-vV")));
+        assert_eq!(
+            settings(&words("--crate-name strandline_sim --crate-type lib")),
+            ["-C", "codegen-units=1"]
+        );
+        assert_eq!(settings(&words("--crate-name strandline_cli --test")), ["-C", "opt-level=0"]);
+        for plain in ["--crate-name strandline_sim --test", "--crate-name strandline_cli", "-vV"] {
+            assert!(settings(&words(plain)).is_empty(), "{plain}");
+        }
         assert!(!is_crate(&words("- --crate-name ___ --print=file-names --crate-type bin")));
         assert!(is_program(&words("--crate-name xtask src/main.rs --crate-type bin --emit=link")));
         for other in [

@@ -11,6 +11,44 @@ const SPARE: usize = 2;
 /// The triangle of a sample that shows no body.
 pub const NO_TRIANGLE: u32 = u32::MAX;
 
+/// The body in samples.
+#[derive(Clone, Copy, Debug)]
+pub struct BodySamples<'a> {
+    /// Width and height \[sample\].
+    size: [usize; 2],
+    columns: usize,
+    inverse_depths: &'a [f32],
+    triangles: &'a [u32],
+}
+
+impl<'a> BodySamples<'a> {
+    /// One over the view depths \[1/m\] and the triangles of a tile.
+    pub fn tile(&self, tile: usize) -> (&'a [f32], &'a [u32]) {
+        let samples = tile * TILE_SAMPLES..(tile + 1) * TILE_SAMPLES;
+        (&self.inverse_depths[samples.clone()], &self.triangles[samples])
+    }
+
+    /// Column and row of the first sample of a tile.
+    pub fn corner(&self, tile: usize) -> [usize; 2] {
+        [tile % self.columns * TILE, tile / self.columns * TILE]
+    }
+
+    /// Triangle and one over the view depth \[1/m\] of a sample; `None` where there is no body, and beside the picture.
+    pub fn at(&self, [column, row]: [usize; 2]) -> Option<(u32, f32)> {
+        if column >= self.size[0] || row >= self.size[1] {
+            return None;
+        }
+        let index = index(self.columns, column, row);
+        let triangle = self.triangles[index];
+        (triangle != NO_TRIANGLE).then(|| (triangle, self.inverse_depths[index]))
+    }
+}
+
+/// Index of a sample among so many columns of tiles.
+fn index(columns: usize, column: usize, row: usize) -> usize {
+    (row / TILE * columns + column / TILE) * TILE_SAMPLES + row % TILE * TILE + column % TILE
+}
+
 /// Samples, stored tile after tile, rows inside a tile: shape `[tile row][tile column][row][column]`.
 /// Tiles at the right and lower edges are stored whole.
 #[derive(Clone, Debug, Default)]
@@ -71,8 +109,14 @@ impl Samples {
 
     /// Index of a sample.
     pub fn index(&self, column: usize, row: usize) -> usize {
-        let tile = row / TILE * self.columns + column / TILE;
-        tile * TILE_SAMPLES + row % TILE * TILE + column % TILE
+        index(self.columns, column, row)
+    }
+
+    /// The colours, to be filled, and the body that is drawn.
+    pub fn parts(&mut self) -> (&mut [Vec4], BodySamples<'_>) {
+        let Self { width, height, columns, .. } = *self;
+        let Self { colors, inverse_depths, triangles, .. } = self;
+        (colors, BodySamples { size: [width, height], columns, inverse_depths, triangles })
     }
 
     /// Radiance times opacity, and opacity, of a sample.

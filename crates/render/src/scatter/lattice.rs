@@ -13,7 +13,7 @@ use strandline_base::par::prelude::*;
 
 use super::inclination::{Inclination, REGION, offsets};
 use super::ways::{DIRECTIONS, Rays, SETS, Set, TANGENTS, directions, tangent};
-use crate::fibre::chiang::{EyeLookUp, Lobes, MOMENTS, Met, Pigments, Table, terms_along};
+use crate::fibre::chiang::{Around, EyeLookUp, Lobes, MOMENTS, Met, Pigments, Table, terms_along};
 use crate::light_field;
 
 /// Least by which albedos of two kinds of hair differ, for a third to lie between them.
@@ -51,6 +51,7 @@ type Shown = [Rays; DIRECTIONS];
 struct End {
     /// Its view at some inclination.
     seen: EyeLookUp,
+    around: Around,
     /// Radiance that it sends along a direction of the next set, of light along one of a set: shape
     /// `[set][tangent][arriving][shown]`. Found when a cell asks for it: hair lies along few of the tangents.
     shown: [Vec<OnceLock<Box<Shown>>>; SETS],
@@ -77,7 +78,7 @@ impl Lattice {
         let seen = EyeLookUp::new(MEAN_SINE, pigments);
         let albedo = self.table.seen_moments(&seen)[0];
         let shown = std::array::from_fn(|_| vec![OnceLock::new(); TANGENTS]);
-        End { seen, shown, albedo }
+        End { seen, around: self.table.around_of(&seen), shown, albedo }
     }
 
     /// Radiance that a kind of hair with a known tangent sends along the set behind one.
@@ -88,7 +89,7 @@ impl Lattice {
             let next = &self.sets[(set + 1) % SETS];
             let mut found = Box::new([[Vec4::ZERO; DIRECTIONS]; DIRECTIONS]);
             for (to, (way, _)) in next.iter().enumerate() {
-                let weights = self.weights_of(&end.seen, t, *way, &arriving, &[0.0; DIRECTIONS]);
+                let weights = self.weights_of(end, t, *way, &arriving, &[0.0; DIRECTIONS]);
                 found.iter_mut().zip(weights).for_each(|(shown, weight)| shown[to] = weight);
             }
             found
@@ -166,7 +167,7 @@ impl Lattice {
         let (offsets, arriving) = (offsets(rays), self.arriving(t, set));
         let of = move |end: &End| {
             let moments = self.table.seen_moments(&end.seen.at(t.dot(to_eye)));
-            (self.weights_of(&end.seen, t, to_eye, &arriving, &offsets), moments)
+            (self.weights_of(end, t, to_eye, &arriving, &offsets), moments)
         };
         self.ends.iter().map(of)
     }
@@ -179,17 +180,18 @@ impl Lattice {
     /// Sines of the inclinations of light along each direction lie so much beside the direction's own.
     fn weights_of(
         &self,
-        seen: &EyeLookUp,
+        end: &End,
         t: Vec3,
         to_eye: Vec3,
         arriving: &[(Arriving, f32); DIRECTIONS],
         offsets: &[f32; DIRECTIONS],
     ) -> Rays {
         let u = light_field::across(t, to_eye);
-        let seen = seen.at(t.dot(to_eye));
+        let seen = end.seen.at(t.dot(to_eye));
+        let terms = (&*self.table.entries, &end.around);
         let along = |arriving: &Arriving, share: f32| {
             let solid = 4.0 * std::f32::consts::PI * share;
-            paths_of(&self.table, &self.table.entries, u, &seen, arriving).map(|path| path * solid)
+            paths_of(&self.table, terms, u, &seen, arriving).map(|path| path * solid)
         };
         let mut paths = [[Vec3::ZERO; 3]; DIRECTIONS];
         let mut sums = [Vec3::ZERO; 3];
@@ -250,7 +252,8 @@ impl Lattice {
     ) {
         let mut sums = [Vec3::ZERO; 3];
         let paths = shows.each_ref().map(|Shows { u, seen, weight }| {
-            let path = paths_of(&self.table, &self.straight, *u, &seen.of(&end.seen), arriving);
+            let path =
+                paths_of(&self.table, (&self.straight, &end.around), *u, &seen.of(&end.seen), arriving);
             sums.iter_mut().zip(path).for_each(|(sum, path)| *sum += path * *weight);
             path
         });
@@ -338,9 +341,15 @@ fn product(weights: &Shown, light: &Rays) -> Rays {
 
 /// Radiance of each kind of path toward the eye, in whose direction `u` is a unit vector across the hair.
 #[inline]
-fn paths_of(table: &Table, terms: &[Vec4], u: Vec3, seen: &EyeLookUp, light: &Arriving) -> [Vec3; 3] {
+fn paths_of(
+    table: &Table,
+    terms: (&[Vec4], &Around),
+    u: Vec3,
+    seen: &EyeLookUp,
+    light: &Arriving,
+) -> [Vec3; 3] {
     let turn = (u.dot(light.to_light) / light.flat).clamp(-1.0, 1.0);
-    table.by_path_along(terms, seen, &light.met, turn, 0.0)
+    table.by_path_around(terms, seen, &light.met, turn)
 }
 
 /// View of hair along one direction.

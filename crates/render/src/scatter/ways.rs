@@ -67,7 +67,7 @@ impl Lines {
 
     /// Cells by which a line lies aside at a plane, counted in the order in which light meets them.
     #[inline]
-    fn aside(&self, plane: i32) -> [i32; 2] {
+    pub(crate) fn aside(&self, plane: i32) -> [i32; 2] {
         // Just below a half: directions along diagonals of cells meet no edge between two of them.
         self.slopes
             .map(|slope| ((slope * plane as f32).abs() + 0.4999).floor() as i32 * slope.signum() as i32)

@@ -2,11 +2,13 @@
 
 mod body;
 mod coverage;
+mod light_shares;
 mod occluders;
 mod ribbons;
 mod sight;
 mod sort;
 mod tiles;
+mod under;
 
 use glam::{Vec2, Vec3, Vec4};
 use strandline_base::par::prelude::*;
@@ -16,15 +18,15 @@ use self::body::Body;
 use self::coverage::{End, Joint, OPAQUE, TileSamples};
 use self::occluders::Occluders;
 use self::ribbons::{Ribbons, Segment};
-use self::sight::Sight;
 use self::tiles::{TileRect, Tiles};
+use self::under::Under;
 use crate::cpu::shade::radiances::Radiances;
 use crate::cpu::shade::skin::Skin;
 use crate::cpu::{Cuts, ShadowBody};
 use crate::frame::projection::Projection;
 use crate::frame::samples::{NO_TRIANGLE, Samples, TILE, TILE_SAMPLES};
 use crate::strands::Strands;
-use crate::surfaces::{Painted, Surfaces};
+use crate::surfaces::Surfaces;
 use crate::{Background, Camera};
 
 /// Width and height of a block of samples that is left out once it is opaque.
@@ -135,29 +137,26 @@ impl Draw {
     }
 
     fn fill(&self, input: &DrawInput, projection: &Projection, skin: &Skin, samples: &mut Samples) {
-        let (columns, height) = (samples.tile_columns(), samples.height() as f32);
-        samples
-            .colors
-            .par_chunks_exact_mut(TILE_SAMPLES)
-            .zip(samples.inverse_depths.par_chunks_exact(TILE_SAMPLES))
-            .zip(samples.triangles.par_chunks_exact(TILE_SAMPLES))
-            .enumerate()
-            .for_each(|(tile, ((colors, depths), triangles))| {
-                colors.fill(Vec4::ZERO);
-                let corner = Vec2::new((tile % columns * TILE) as f32, (tile / columns * TILE) as f32);
-                let bare = triangles.iter().all(|&triangle| triangle == NO_TRIANGLE);
-                let hair = TileSamples { colors, depths: (!bare).then_some(depths), round: input.round };
-                self.hair(tile, corner, &input.light, hair);
-                if let Some(body) = &self.body
-                    && !bare
-                {
-                    let under = Under { body, projection, skin, corner, triangles, depths };
-                    under.fill(colors, input.supersampling as usize);
-                }
-                if let Some(background) = input.background {
-                    background.fill(colors, corner.y, height);
-                }
-            });
+        let height = samples.height() as f32;
+        let (colors, seen) = samples.parts();
+        colors.par_chunks_exact_mut(TILE_SAMPLES).enumerate().for_each(|(tile, colors)| {
+            colors.fill(Vec4::ZERO);
+            let corner = seen.corner(tile);
+            let at = Vec2::from(corner.map(|at| at as f32));
+            let (depths, triangles) = seen.tile(tile);
+            let bare = triangles.iter().all(|&triangle| triangle == NO_TRIANGLE);
+            let hair = TileSamples { colors, depths: (!bare).then_some(depths), round: input.round };
+            self.hair(tile, at, &input.light, hair);
+            if let Some(body) = &self.body
+                && !bare
+            {
+                let pixel = input.supersampling as usize;
+                Under { body, projection, skin, seen, corner, triangles, depths, pixel }.fill(colors);
+            }
+            if let Some(background) = input.background {
+                background.fill(colors, at.y, height);
+            }
+        });
     }
 
     /// The segments of one tile, nearest first.
@@ -247,80 +246,6 @@ fn opaque_blocks(known: u16, colors: &[Vec4]) -> u16 {
             (0..BLOCK).all(|row| colors[first + row * TILE..][..BLOCK].iter().all(|color| color.w >= OPAQUE));
         known | u16::from(opaque) << block
     })
-}
-
-/// The body in one tile.
-struct Under<'a> {
-    body: &'a Body,
-    projection: &'a Projection,
-    skin: &'a Skin<'a>,
-    corner: Vec2,
-    triangles: &'a [u32],
-    depths: &'a [f32],
-}
-
-impl Under<'_> {
-    /// Puts the lit body under what is there. The samples of a pixel that show the same surface are lit
-    /// together.
-    fn fill(&self, colors: &mut [Vec4], pixel: usize) {
-        for row in (0..TILE).step_by(pixel) {
-            for column in (0..TILE).step_by(pixel) {
-                let mut lit: Option<(f32, Vec4)> = None;
-                for sample in 0..pixel * pixel {
-                    let index = (row + sample / pixel) * TILE + column + sample % pixel;
-                    if self.triangles[index] == NO_TRIANGLE || colors[index].w >= OPAQUE {
-                        continue;
-                    }
-                    let depth = self.depths[index];
-                    let known = lit.filter(|&(known, _)| is_near(known, depth));
-                    let (_, radiance) = *lit.insert(known.unwrap_or_else(|| {
-                        let corner = [column, row];
-                        let middle = Vec2::new(column as f32, row as f32) + 0.5 * pixel as f32;
-                        let painted = self.painted(corner, pixel, sample, depth);
-                        (depth, self.radiance(self.triangles[index], self.corner + middle, painted))
-                    }));
-                    colors[index] += radiance * (1.0 - colors[index].w);
-                }
-            }
-        }
-    }
-
-    /// The mean paint of the samples of a pixel, from one on, that show the surface at some depth; `None` without
-    /// materials. The pixel begins at a column and a row.
-    fn painted(&self, [column, row]: [usize; 2], pixel: usize, first: usize, depth: f32) -> Option<Painted> {
-        let surfaces = self.body.surfaces.as_ref().filter(|_| self.skin.look.materials)?;
-        let painted = |sample: usize| {
-            let (x, y) = (column + sample % pixel, row + sample / pixel);
-            let triangle = self.triangles[y * TILE + x];
-            if triangle == NO_TRIANGLE || !is_near(depth, self.depths[y * TILE + x]) {
-                return None;
-            }
-            let place = self.corner + Vec2::new(x as f32, y as f32) + 0.5;
-            let sight = self.body.sight(triangle, self.projection, place);
-            Some(self.body.painted(surfaces, triangle, &sight, self.projection))
-        };
-        Painted::mean((first..pixel * pixel).filter_map(painted))
-    }
-
-    /// Radiance of a triangle where it is seen at a place on the screen, with an opacity of 1.
-    fn radiance(&self, triangle: u32, place: Vec2, painted: Option<Painted>) -> Vec4 {
-        let corners = self.body.triangle(triangle);
-        let Sight { shares, way, face, .. } = self.body.sight(triangle, self.projection, place);
-        let mix =
-            |of: &[Vec3]| of[corners[0]] * shares.x + of[corners[1]] * shares.y + of[corners[2]] * shares.z;
-        let (point, normal) = (mix(&self.body.positions), mix(&self.body.normals).normalize_or(Vec3::Y));
-        // The inside of an open mesh is lit like its outside.
-        let normal = if normal.dot(way) > 0.0 && face.dot(way) > 0.0 { -normal } else { normal };
-        let root = |corner: usize| self.body.roots.get(corner).copied().unwrap_or(0.0);
-        let rooted = Vec3::from(corners.map(root)).dot(shares);
-        let radiance = self.skin.radiance(point, normal, rooted, painted.as_ref());
-        if radiance.is_finite() { radiance.extend(1.0) } else { Vec4::W }
-    }
-}
-
-/// True for two inverse depths \[1/m\] of one surface: less than half a per cent of the distance apart.
-fn is_near(known: f32, depth: f32) -> bool {
-    (known - depth).abs() < 0.005 * depth
 }
 
 impl Background {

@@ -57,10 +57,43 @@ struct Way {
     /// Unit direction in which light goes.
     direction: Vec3,
     lines: Lines,
-    /// The slot before each one along its line; none where there is nothing before.
-    before: Vec<u32>,
+    before: Before,
     /// Radiance that leaves each slot.
     leaving: Vec<Vec4>,
+}
+
+/// The slot before each one along its line; none where there is nothing before.
+#[derive(Clone, Debug, Default)]
+struct Before {
+    slots: Vec<u32>,
+    /// The last slot of each line, while slots are gone through.
+    last: Vec<u32>,
+}
+
+impl Before {
+    /// Goes through slots, given as cells and as an order along the axis of the lines.
+    fn fill(&mut self, cells: &[Cell], order: &[u32], lines: &Lines, counts: IVec3) {
+        let [axis, first, second] = [0, 1, 2].map(|more| (lines.axis + more) % 3);
+        let asides: Vec<[i32; 2]> = (0..counts[axis]).map(|number| lines.aside(number)).collect();
+        // Numbers of lines aside: a line that enters beside the first plane has a number below 0 or beyond the cells.
+        let farthest = asides.last().copied().unwrap_or_default();
+        let [low, high] =
+            [0, 1].map(|side| farthest.map(|far| if side == 0 { far.max(0) } else { (-far).max(0) }));
+        let width = counts[first] + low[0] + high[0];
+        let height = counts[second] + low[1] + high[1];
+        self.last.clear();
+        self.last.resize((width * height) as usize, NONE);
+        self.slots.resize(cells.len(), NONE);
+        let (last, slots) = (&mut self.last, &mut self.slots);
+        let mut pass = |slot: &u32| {
+            let index = cells[*slot as usize].index as i32;
+            let at = IVec3::new(index % counts.x, index / counts.x % counts.y, index / counts.x / counts.y);
+            let [aside, down] = asides[lines.plane(at[axis], counts[axis]) as usize];
+            let line = (at[second] - down + low[1]) * width + at[first] - aside + low[0];
+            slots[*slot as usize] = std::mem::replace(&mut last[line as usize], *slot);
+        };
+        if lines.is_backward() { order.iter().rev().for_each(pass) } else { order.iter().for_each(&mut pass) }
+    }
 }
 
 /// Effect of a cell on light along a direction.
@@ -128,14 +161,13 @@ impl Carried {
 
     /// Lays the lines of cells along every direction of a set.
     fn lay_ways(&mut self, set: usize, cells: &[Cell], lattice: &Lattice) {
-        let (slots, counts) = (&self.slots, self.counts);
+        let (orders, counts) = (&self.orders, self.counts);
         let Rayed { crossings, ways, .. } = &mut self.sets[set];
         ways.resize_with(DIRECTIONS, Way::default);
         ways.par_iter_mut().zip(lattice.ways(set)).for_each(|(way, (direction, _))| {
             (way.direction, way.lines) = (*direction, Lines::new(*direction));
             way.leaving.resize(cells.len(), Vec4::ZERO);
-            way.before.clear();
-            way.before.extend(cells.iter().map(|cell| before(slots, counts, &way.lines, cell.index)));
+            way.before.fill(cells, &orders[way.lines.axis], &way.lines, counts);
         });
         crossings.resize_with(HALF, Vec::new);
         crossings.par_iter_mut().zip(ways).for_each(|(crossings, way)| {
@@ -162,7 +194,7 @@ impl Carried {
             for number in 0..order.len() {
                 let number = if lines.is_backward() { order.len() - 1 - number } else { number };
                 let slot = order[number] as usize;
-                let arrived = leaving.get(before[slot] as usize).copied().unwrap_or(outside);
+                let arrived = leaving.get(before.slots[slot] as usize).copied().unwrap_or(outside);
                 let ray = &mut rays[slot / BLOCK][slot % BLOCK];
                 leaving[slot] = crossings[slot].turned(opposite).cross(ray, skins[slot], arrived);
             }
@@ -201,19 +233,20 @@ impl Carried {
     pub(super) fn reached(&self, cells: &[Cell], direction: Vec3) -> Vec<f32> {
         let lines = Lines::new(direction);
         let (mut leaving, mut found) = (vec![0.0; cells.len()], vec![0.0; cells.len()]);
+        let order = &self.orders[lines.axis];
+        let mut before = Before::default();
+        before.fill(cells, order, &lines, self.counts);
         let mut cross = |slot: &u32| {
             let cell = &cells[*slot as usize];
-            let before = before(&self.slots, self.counts, &lines, cell.index);
-            let arrived = leaving.get(before as usize).copied().unwrap_or(1.0);
+            let arrived = leaving.get(before.slots[*slot as usize] as usize).copied().unwrap_or(1.0);
             let Crossing { before, behind, passed, mean } = Crossing::new(cell, direction, lines.length);
             found[*slot as usize] = arrived * before * mean;
             leaving[*slot as usize] = arrived * before * passed * behind;
         };
-        let order = self.orders[lines.axis].iter();
         if lines.is_backward() {
-            order.rev().for_each(cross)
+            order.iter().rev().for_each(cross)
         } else {
-            order.for_each(&mut cross)
+            order.iter().for_each(&mut cross)
         }
         found
     }
@@ -303,6 +336,26 @@ impl Crossing {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_slot_before_another_is_the_last_along_its_line() {
+        let counts = [9, 14, 11];
+        let grid = GridBox { min: Vec3::ZERO, cell: 1.0, counts };
+        let mut cells = Vec::new();
+        for index in 0..counts.iter().product() {
+            if strandline_base::Random::new(2, index as u64).unit() < 0.3 {
+                cells.push(Cell { index, ..Cell::default() });
+            }
+        }
+        let mut carried = Carried::default();
+        carried.lay(&grid, &cells);
+        for (way, _) in (0..SETS).flat_map(crate::scatter::ways::directions) {
+            let (lines, mut found) = (Lines::new(way), Before::default());
+            found.fill(&cells, &carried.orders[lines.axis], &lines, carried.counts);
+            let walked = cells.iter().map(|cell| before(&carried.slots, carried.counts, &lines, cell.index));
+            assert!(found.slots.iter().copied().eq(walked), "{way}");
+        }
+    }
 
     #[test]
     fn thin_hair_dims_light_as_the_exponential_says() {

@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 use glam::Vec3;
 
 use crate::cpu::{LightGrid, Occlusion};
-use crate::shadow::Shadows;
+use crate::shadow::{ShadowMap, Shadows};
 use crate::strands::scalp::tint;
 use crate::surfaces::Painted;
 use crate::{BodyLook, Environment, Light};
@@ -32,9 +32,16 @@ pub struct Skin<'a> {
 }
 
 impl Skin<'_> {
-    /// Radiance toward the camera, linear RGB, of a point \[m\] with a unit normal, world space, where roots are so
-    /// dense, 0 to 1, and with the paint that it has.
-    pub(crate) fn radiance(&self, point: Vec3, normal: Vec3, rooted: f32, painted: Option<&Painted>) -> Vec3 {
+    /// Radiance toward the camera, linear RGB, of a place with the paint that it has. `passed` tells the share of a light
+    /// that reaches it, by its map, the number of the light's place among all, and among those of its light with their
+    /// number.
+    pub(crate) fn radiance(
+        &self,
+        place: &SkinPoint,
+        painted: Option<&Painted>,
+        mut passed: impl FnMut(&ShadowMap, usize, [usize; 2]) -> f32,
+    ) -> Vec3 {
+        let SkinPoint { point, normal, rooted } = *place;
         let finish = &Finish::new(self.look, tint(self.scalp, rooted), painted);
         let to_eye = (self.eye - point).normalize_or(normal);
         let around = match self.grid {
@@ -53,7 +60,7 @@ impl Skin<'_> {
                 let reflected = reflectance(finish, normal, to_eye, lit.to_light, blur) * lit.radiance;
                 if reflected != Vec3::ZERO {
                     let map = self.shadows.map(first + place);
-                    let passed = map.map_or(1.0, |map| map.on_skin(point, normal, [place, count]));
+                    let passed = map.map_or(1.0, |map| passed(map, first + place, [place, count]));
                     sum += reflected * bled(passed, finish.bleed) * PI;
                 }
             }
@@ -61,6 +68,17 @@ impl Skin<'_> {
         }
         sum
     }
+}
+
+/// A place of the body.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SkinPoint {
+    /// The point \[m\], world space.
+    pub point: Vec3,
+    /// The unit normal, world space.
+    pub normal: Vec3,
+    /// Density of roots there, 0 to 1.
+    pub rooted: f32,
 }
 
 /// The reflecting surface of a place.

@@ -39,6 +39,14 @@ const MIDDLE: [Vec2; LANES] = [Vec2::ZERO; LANES];
 pub(super) const CORNERS: [Vec2; LANES] =
     [Vec2::new(-0.5, -0.5), Vec2::new(0.5, -0.5), Vec2::new(-0.5, 0.5), Vec2::new(0.5, 0.5)];
 
+/// Parts of all rays that pixels beside each other follow one each of.
+pub(crate) const QUARTERS: usize = 4;
+
+/// True for a share at which a few rays tell of all.
+fn is_plain(share: f32) -> bool {
+    share == 0.0 || share == 1.0
+}
+
 /// Rays to a part of a light, one in a lane.
 #[derive(Clone, Copy)]
 struct Rays {
@@ -200,6 +208,58 @@ impl ShadowMap {
     /// Share of a light's place that hair and body let through to a point \[m\] of skin with a unit normal, world space.
     /// `places` are the place's number and the number of places.
     pub(crate) fn on_skin(&self, point: Vec3, normal: Vec3, places: [usize; 2]) -> f32 {
+        let rays = self.settings.rays_of(places[1]);
+        self.along(point, normal, |shares| {
+            if rays > 1 + CORNERS.len() {
+                let [first, ..] = shares(&Rays::to(MIDDLE));
+                if is_plain(first) && shares(&Rays::to(CORNERS)) == [first; LANES] {
+                    return first;
+                }
+            }
+            let mut sum = 0.0;
+            for first in (0..rays).step_by(LANES) {
+                let shares = shares(&Rays::new(first, rays, places));
+                shares[..LANES.min(rays - first)].iter().for_each(|share| sum += share);
+            }
+            sum / rays as f32
+        })
+    }
+
+    /// As [`ShadowMap::on_skin`], by one of [`QUARTERS`] of the rays, if they can be parted so: pixels beside each other
+    /// follow one each, and their mean is that of all rays.
+    pub(crate) fn quarter_on_skin(
+        &self,
+        point: Vec3,
+        normal: Vec3,
+        places: [usize; 2],
+        quarter: usize,
+    ) -> Option<f32> {
+        let rays = self.settings.rays_of(places[1]);
+        if self.view.part == [Vec2::ZERO; 2] || !rays.is_multiple_of(QUARTERS * LANES) {
+            return None;
+        }
+        let count = rays / QUARTERS;
+        Some(self.along(point, normal, |shares| {
+            let group = |number: usize| Rays::new((QUARTERS * number + quarter) * LANES, rays, places);
+            let first = shares(&group(0));
+            let plain = count > LANES && is_plain(first[0]) && first == [first[0]; LANES];
+            if plain && shares(&Rays::to(CORNERS)) == first {
+                return first[0];
+            }
+            let others = (1..count / LANES).flat_map(|number| shares(&group(number)));
+            first.into_iter().chain(others).sum::<f32>() / count as f32
+        }))
+    }
+
+    /// What `of` makes of the shares that reach a point of skin along the rays that it asks for; 1 where nothing can lie
+    /// before any of them.
+    #[inline]
+    fn along(
+        &self,
+        point: Vec3,
+        normal: Vec3,
+        of: impl FnOnce(&dyn Fn(&Rays) -> [f32; LANES]) -> f32,
+    ) -> f32 {
         if self.view.part == [Vec2::ZERO; 2] {
             return self.transmittance(point);
         }
@@ -208,25 +268,11 @@ impl ShadowMap {
         if body.steps | hair.steps == 0 {
             return 1.0;
         }
-        let shares = |rays: &Rays| -> [f32; LANES] {
+        of(&|rays| {
             let open = self.past_body(&body, rays);
             let hair = self.past_hair(&hair, rays, open.simd_gt(f32x4::ZERO).to_bitmask());
             (open * hair).to_array()
-        };
-        let rays = self.settings.rays_of(places[1]);
-        if rays > 1 + CORNERS.len() {
-            let [first, ..] = shares(&Rays::to(MIDDLE));
-            let plain = first == 0.0 || first == 1.0;
-            if plain && shares(&Rays::to(CORNERS)) == [first; LANES] {
-                return first;
-            }
-        }
-        let mut sum = 0.0;
-        for first in (0..rays).step_by(LANES) {
-            let shares = shares(&Rays::new(first, rays, places));
-            shares[..LANES.min(rays - first)].iter().for_each(|share| sum += share);
-        }
-        sum / rays as f32
+        })
     }
 
     /// The way of rays past the body, from off the skin.

@@ -12,8 +12,8 @@ use strandline_base::{choices, settings};
 
 pub use lobes::{LOBES, Lobes};
 pub use moments::MOMENTS;
-pub(crate) use table::terms_along;
 pub use table::{AROUND, ENTRIES, EyeLookUp, LEVELS, Met, Pigments, Table};
+pub(crate) use table::{Around, terms_along};
 
 /// Absorption per fibre radius of one unit of eumelanin and of pheomelanin \[d'Eon2011\].
 const EUMELANIN: DVec3 = DVec3::new(0.419, 0.697, 1.37);

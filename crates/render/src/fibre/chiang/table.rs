@@ -1,8 +1,9 @@
 //! The fibre seen from afar as tables, derived once on the host and read by both backends.
 //!
 //! Radiance over irradiance is the sum over the kinds of paths of a term along the fibre, which depends on both
-//! inclinations, times one around it, which depends on the eye's inclination, the turn and the pigment. All entries
-//! are vectors of four.
+//! inclinations, times one around it, which depends on the eye's inclination, the turn and the pigment.
+
+mod around;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -14,6 +15,8 @@ use super::lobes::{LOBES, Lobes};
 use super::moments::{MOMENTS, moments, powers};
 pub use super::ring::TURNS;
 use super::ring::{Ring, turn_sums};
+use around::Along;
+pub(crate) use around::Around;
 
 /// Nodes of the sum of both inclinations, -pi to pi.
 pub const SUMS: usize = 257;
@@ -190,17 +193,29 @@ impl Table {
         turn: f32,
         shift: f32,
     ) -> [Vec3; 3] {
-        let cosines = (seen.square * met.square).max(0.0).sqrt();
-        let along = along(terms, seen.angle, met.angle, shift) / evened(cosines, self.floor);
-        let turn = FRAC_PI_2 as f32 - arc_sine(turn);
-        let turn = place(turn * std::f32::consts::FRAC_1_PI, TURNS);
-        let [first, second] = if seen.even {
+        let (along, turn) = self.along(terms, seen, met, turn, shift);
+        along.times(if seen.even {
             self.around(seen.row, turn, seen.levels[0])
         } else {
             let found = seen.levels.map(|level| self.around(seen.row, turn, level));
             channels(found, [0, 1].map(|term| found[0][term].w))
-        };
-        [Vec3::splat(first.w * along.x), first.truncate() * along.y, second.truncate() * along.z]
+        })
+    }
+
+    /// Terms along the fibre, and the node before the turn of a cosine with the share of the way to the next one.
+    #[inline]
+    fn along(
+        &self,
+        terms: &[Vec4],
+        seen: &EyeLookUp,
+        met: &Met,
+        turn: f32,
+        shift: f32,
+    ) -> (Along, (usize, f32)) {
+        let cosines = (seen.square * met.square).max(0.0).sqrt();
+        let along = along(terms, seen.angle, met.angle, shift) / evened(cosines, self.floor);
+        let turn = FRAC_PI_2 as f32 - arc_sine(turn);
+        (Along(along), place(turn * std::f32::consts::FRAC_1_PI, TURNS))
     }
 
     /// Terms around the fibre between nodes of the eye's inclination, the turn and the pigment.

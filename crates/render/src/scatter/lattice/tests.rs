@@ -32,13 +32,8 @@ fn opposite_hair_scatters_as_its_own_tangent_says() {
         let mut shown = [Vec4::ZERO; DIRECTIONS];
         lattice.add_shown(0, lattice.nearest(t), (1.0, &ALL_DARK), &light, &mut shown);
         for (shown, (way, _)) in shown.iter().zip(lattice.ways(1)) {
-            let weights = lattice.weights_of(
-                &lattice.ends[0].seen,
-                t,
-                *way,
-                &lattice.arriving(t, 0),
-                &[0.0; DIRECTIONS],
-            );
+            let weights =
+                lattice.weights_of(&lattice.ends[0], t, *way, &lattice.arriving(t, 0), &[0.0; DIRECTIONS]);
             let expected: Vec4 = weights.iter().zip(&light).map(|(weight, light)| *weight * *light).sum();
             assert!((shown.x / expected.x - 1.0).abs() < 1e-3, "{t} {way}: {shown} {expected}");
         }
@@ -105,11 +100,12 @@ fn carried_light_keeps_its_inclination_as_long_as_a_fibre_lets_it() {
     let sphere: Vec<Vec3> = (0..TANGENTS).flat_map(|index| [tangent(index), -tangent(index)]).collect();
     let exact = Table::new(&lobes, [0.0; 3]);
     let seen = EyeLookUp::new(MEAN_SINE, Pigments::Even(1.0));
+    let around = exact.around_of(&seen);
     let of_fibre = kept(&lattice, &sphere, |tangent, to, from| {
         let (t, (way, share)) = (lattice.tangents[tangent], lattice.ways(0)[from]);
         let u = light_field::across(t, sphere[to]);
         let arriving = Arriving::new(t, -way);
-        let paths = paths_of(&exact, &exact.entries, u, &seen.at(t.dot(sphere[to])), &arriving);
+        let paths = paths_of(&exact, (&exact.entries, &around), u, &seen.at(t.dot(sphere[to])), &arriving);
         share * paths.into_iter().sum::<Vec3>().x
     });
     // The directions carry the turn toward the root that the tilted scales make; a single set of 26 carries half of it.
