@@ -1,15 +1,18 @@
 //! Cut hair and let it grow while it moves: one side is shortened to 60 %, the other is half as long again.
 //! `cargo run --release -p strandline --example length`
 
-use strandline::{Backend, Camera, Hair, Look, Pose, Settings, Style, settings::StyleSettings};
+use strandline::{Camera, Hair, Look, Pose, Scene, Style};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let quick = std::env::var_os("STRANDLINE_QUICK").is_some();
-    let strand_count = if quick { 50 } else { 2000 };
-    let groom = StyleSettings { strand_count, ..StyleSettings::new(Style::Long) }.grow()?;
-    let mut hair = Hair::new(Backend::auto(), &groom, &Settings::default())?;
-    let roots = groom.starts.iter().take(strand_count).map(|start| groom.points[*start as usize]);
-    let scales: Vec<f32> = roots.map(|root| if root.x > 0.0 { 0.6 } else { 1.5 }).collect();
+    let mut scene = Scene::default();
+    scene.set_style(Style::Long);
+    scene.style.strand_count = if quick { 50 } else { 2000 };
+    scene.groom.bound = Some(0);
+    let mut hair = Hair::open(&scene)?;
+    let strands = 0..hair.guides().strand_count();
+    let is_right = |strand| hair.guides().position(strand, 0).x > 0.0;
+    let scales: Vec<f32> = strands.map(|strand| if is_right(strand) { 0.6 } else { 1.5 }).collect();
     hair.set_length_scale(&scales)?;
     let reports = hair.step(0.25, Pose::IDENTITY)?;
     assert!(reports.iter().all(|report| report.stretch_max < 1e-3), "hair has other lengths than those");

@@ -1,5 +1,6 @@
 //! Every stage of the GPU backend against its twin in plain Rust.
 
+mod between;
 mod bound;
 mod channels;
 mod chiang;

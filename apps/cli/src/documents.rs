@@ -17,6 +17,29 @@ const MEASURED: [(&str, &str, &str, usize, &str); 5] = [
     ("48,000 strands", "groom", "/results/first_pictures/0/seconds", 1, "s"),
 ];
 
+/// Rows of README.md beside others: words of the row, times of ours and of the other in bench/peers.json, words before the
+/// ratio.
+const BESIDE: [(&str, &str, &str, &str); 3] = [
+    (
+        "11,400 strands of 16 points",
+        "/steps/strandline, rods, 2 threads",
+        "/steps/Jolt, two halves of the hair on 2 threads",
+        "Jolt's hair on two threads: ",
+    ),
+    (
+        "1,750 strands of 6 points",
+        "/sizes/1,750 x 6, 32^3/rods_ms",
+        "/sizes/1,750 x 6, 32^3/jolt_2_threads_ms",
+        "Jolt's hair on two threads: ",
+    ),
+    (
+        "560,000 segments",
+        "/pictures_800x600/strandline, the thesis's look/171,000 segments",
+        "/pictures_800x600/Cycles, 1 sample per pixel/171,000 segments",
+        "Cycles, 1 sample per pixel: ",
+    ),
+];
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
@@ -101,16 +124,56 @@ fn row(argument: &Arg) -> String {
     format!("| `{}` | {} |\n", name.replace('|', "\\|"), cell.replace('|', "\\|"))
 }
 
-/// Rows of a document that do not show the figure of bench.
+/// A file of bench.
+fn bench(file: &str) -> Value {
+    serde_json::from_str(&read(&format!("bench/{file}.json"))).unwrap()
+}
+
+/// Rows of the README that do not show the figure of bench, or the ratio to another program.
 fn other_figures(document: &str) -> Vec<String> {
-    let wrong = MEASURED.iter().filter_map(|&(words, file, place, decimals, unit)| {
-        let bench: Value = serde_json::from_str(&read(&format!("bench/{file}.json"))).unwrap();
-        let figure = bench.pointer(place).and_then(Value::as_f64).unwrap();
-        let cell = format!("| {figure:.decimals$} {unit}");
-        let shown = document.lines().any(|line| line.contains(words) && line.contains(&cell));
-        (!shown).then(|| format!("no row of \"{words}\" has `{cell}`"))
+    let absent = |words: &str, shown: &str| {
+        let found = document.lines().any(|line| line.contains(words) && line.contains(shown));
+        (!found).then(|| format!("no row of \"{words}\" has `{shown}`"))
+    };
+    let figures = MEASURED.iter().filter_map(|&(words, file, place, decimals, unit)| {
+        let figure = bench(file).pointer(place).and_then(Value::as_f64).unwrap();
+        absent(words, &format!("| {figure:.decimals$} {unit}"))
     });
-    wrong.collect()
+    let peers = bench("peers");
+    let ratios = BESIDE.iter().filter_map(|&(words, ours, other, before)| {
+        let [ours, other] = [ours, other].map(|place| {
+            let row = peers.pointer(place).unwrap();
+            row.get("ms").unwrap_or(row)["median"].as_f64().unwrap()
+        });
+        absent(words, &format!("{before}{:.1} times", other / ours))
+    });
+    figures.chain(ratios).collect()
+}
+
+/// Rows of the tables beside others that a document lacks.
+fn lacking_rows(document: &str) -> Vec<String> {
+    let peers = bench("peers");
+    let rows = |table: &str| peers[table].as_object().unwrap().clone();
+    let steps = rows("steps");
+    let ours = steps["strandline, rods, 2 threads"]["ms"]["median"].as_f64().unwrap();
+    let steps = steps.iter().map(|(name, row)| {
+        let ms = &row["ms"];
+        let ratio = ms["median"].as_f64().unwrap() / ours;
+        let ratio = if ratio == 1.0 { "1".to_owned() } else { format!("{ratio:.1}") };
+        [format!("| {name} "), format!("| {} ({} to {}) | {ratio} |", ms["median"], ms["min"], ms["max"])]
+    });
+    let pictures = rows("pictures_800x600").into_iter().map(|(name, row)| {
+        let cells = ["171,000 segments", "2,052,000 segments"].map(|segments| {
+            row[segments]["ms"]["median"].as_u64().map_or_else(|| " |".to_owned(), |ms| format!(" {ms} ms |"))
+        });
+        [format!("| {name} "), format!("|{}{}", cells[0], cells[1])]
+    });
+    let lines: Vec<String> = document.lines().map(|line| line.replace(',', "")).collect();
+    let shows = |[name, cells]: &[String; 2]| {
+        let name = name.replace(',', "");
+        lines.iter().any(|line| line.starts_with(name.trim_end()) && line.contains(cells.as_str()))
+    };
+    steps.chain(pictures).filter(|row| !shows(row)).map(|row| row.concat()).collect()
 }
 
 #[test]
@@ -128,7 +191,18 @@ fn the_page_of_commands_is_that_of_the_program() {
 fn measured_figures_of_the_readme_are_those_of_bench() {
     let readme = read("README.md");
     assert_eq!(other_figures(&readme), [""; 0]);
-    assert_eq!(other_figures(&readme.replace("| 34 ms", "| 33 ms")).len(), 1);
+    for (right, wrong) in [("| 34 ms", "| 33 ms"), ("1.6 times", "2.1 times"), ("3.9 times", "3.8 times")] {
+        assert_eq!(other_figures(&readme.replace(right, wrong)).len(), 1, "{wrong}");
+    }
+}
+
+#[test]
+fn tables_beside_others_are_those_of_bench() {
+    let page = read("docs/performance.md");
+    assert_eq!(lacking_rows(&page), [""; 0]);
+    for (right, wrong) in [("53.8 to 71.0", "53.8 to 61.0"), ("| 1.6 |", "| 1.7 |"), ("594 ms", "595 ms")] {
+        assert_eq!(lacking_rows(&page.replacen(right, wrong, 1)).len(), 1, "{wrong}");
+    }
 }
 
 #[test]

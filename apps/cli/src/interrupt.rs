@@ -82,13 +82,12 @@ impl Stoppable {
         Self(())
     }
 
-    /// The work is done and written: a request that comes now finds nothing to stop, and the program ends as it
-    /// would without.
+    /// Marks the work as done and written: a request to stop that comes later has no effect.
     pub fn finish(self) {
         FINISHED.store(true, SeqCst);
     }
 
-    /// The request to stop, if there was any.
+    /// Fails where a person or the system has asked the program to stop; `done` of `of` are finished.
     pub fn check(&self, done: u64, of: u64, what: &'static str) -> Result<(), Stopped> {
         match ASKED.load(SeqCst) {
             0 => Ok(()),

@@ -216,7 +216,7 @@ fn film(scene: &Scene, cache: Option<Cache>, folder: &Path, json: bool) -> anyho
     // A request to stop waits until the film is closed.
     let stoppable = Stoppable::begin();
     let mut film = Film::new(folder, player.frames(), scene.film.frames_per_second / every as f32)?;
-    let mut drawn = Drawn::default();
+    let mut drawn = PictureCosts::default();
     if let Err(error) = play(&mut player, &mut film, &mut drawn, &stoppable, json) {
         return Err(stopped_early(film, folder, error));
     }
@@ -225,7 +225,7 @@ fn film(scene: &Scene, cache: Option<Cache>, folder: &Path, json: bool) -> anyho
     for note in &written.notes {
         output::note(note);
     }
-    let Drawn { beside, alone, strands, segments, non_finite } = drawn;
+    let PictureCosts { beside, alone, strands, segments, non_finite } = drawn;
     let report = RenderReport {
         backend: source.unwrap_or_else(|| player.simulated_on()),
         render_backend: player.drawn_on(),
@@ -247,9 +247,9 @@ fn film(scene: &Scene, cache: Option<Cache>, folder: &Path, json: bool) -> anyho
     if written.video_failed { Err(NoVideo.into()) } else { Ok(()) }
 }
 
-/// Contents of the drawn pictures.
+/// Costs and contents of the drawn pictures.
 #[derive(Default)]
-struct Drawn {
+struct PictureCosts {
     /// Pictures that were drawn while the next frame was simulated, and the last one.
     beside: Collector,
     alone: Collector,
@@ -261,7 +261,7 @@ struct Drawn {
 fn play(
     player: &mut Player,
     film: &mut Film,
-    drawn: &mut Drawn,
+    drawn: &mut PictureCosts,
     stoppable: &Stoppable,
     quiet: bool,
 ) -> anyhow::Result<()> {

@@ -1,7 +1,7 @@
 //! Clips of a body's glTF file, in a list.
 
 use eframe::egui::{self, Ui};
-use strandline::edit::{Found, Value, Values, with_value};
+use strandline::edit::{SettingMatch, Value, Values, with_value};
 
 use crate::{App, controls::about, setting_row};
 
@@ -9,7 +9,7 @@ use crate::{App, controls::about, setting_row};
 const NONE: &str = "no clip";
 
 /// The row of a clip: a list of those of the file beside it, or a field where the file has none.
-pub fn row(app: &mut App, found: &Found, values: &Values, ui: &mut Ui) {
+pub fn row(app: &mut App, found: &SettingMatch, values: &Values, ui: &mut Ui) {
     let file = found.key.strip_suffix("clip").and_then(|section| values.get(&format!("{section}file")));
     let file = file.and_then(Value::as_str).map(|file| app.scene.folder.join(file));
     let known = app.clips.entry(found.key.clone()).or_default();

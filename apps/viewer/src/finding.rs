@@ -1,7 +1,7 @@
 //! A field that finds any setting by its name or its sentence, and changes it in place.
 
 use eframe::egui::{self, Ui};
-use strandline::edit::{Found, Values, find};
+use strandline::edit::{SettingMatch, Values, find};
 
 use crate::{App, setting_row};
 
@@ -19,7 +19,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
         finding.looked_for.clone_from(&finding.words);
         finding.found = find(&finding.words);
     }
-    let found: Vec<Found> = finding.found.iter().take(MOST).cloned().collect();
+    let found: Vec<SettingMatch> = finding.found.iter().take(MOST).cloned().collect();
     if !found.is_empty() {
         let values = Values::of(&app.scene);
         found.iter().for_each(|found| setting_row::show(app, found, &values, &found.key, ui));

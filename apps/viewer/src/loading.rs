@@ -49,7 +49,7 @@ pub fn progress(app: &App, ui: &mut Ui) {
     ui.label(words(loading)).on_hover_text("the scene that is shown plays on meanwhile");
 }
 
-/// The room of the picture before there is one: the hair as far as it is there, and the progress.
+/// Shows the progress of loading in place of the picture, over the guides that are loaded by then.
 pub fn show(app: &App, ui: &mut Ui, room: Rect) {
     if !app.is_loading() && app.error.is_some() {
         ui.centered_and_justified(|ui| ui.label("nothing to show: the scene was not loaded; open another"));

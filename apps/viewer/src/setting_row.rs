@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, DragValue, Id, TextEdit, Ui, WidgetInfo, accesskit::Role};
 use strandline::{
-    edit::{Found, Value, Values, quantity, with_value},
+    edit::{SettingMatch, Value, Values, quantity, with_value},
     settings::{Kind, Row, Word},
 };
 
@@ -13,7 +13,7 @@ const ABSENT: &str = "not given";
 
 /// Shows a setting by a name, and changes the scene where the row's value was changed. A right click on the name leaves
 /// the setting out of the scene, which then has its default.
-pub fn show(app: &mut App, found: &Found, values: &Values, name: &str, ui: &mut Ui) {
+pub fn show(app: &mut App, found: &SettingMatch, values: &Values, name: &str, ui: &mut Ui) {
     let now = values.get(&found.key);
     let row = ui.scope_id().with(&found.key);
     let changed = ui.horizontal_wrapped(|ui| {
@@ -46,7 +46,7 @@ fn tick(mut flag: bool, name: &str, ui: &mut Ui) -> Option<Option<Value>> {
 }
 
 /// A list of words, one of which is the present one.
-fn choice(found: &Found, words: &[Word], now: Option<&str>, ui: &mut Ui) -> Option<Option<Value>> {
+fn choice(found: &SettingMatch, words: &[Word], now: Option<&str>, ui: &mut Ui) -> Option<Option<Value>> {
     let mut chosen = now;
     let list = egui::ComboBox::from_id_salt(&found.key).selected_text(now.unwrap_or(ABSENT));
     list.show_ui(ui, |ui| {
@@ -60,7 +60,7 @@ fn choice(found: &Found, words: &[Word], now: Option<&str>, ui: &mut Ui) -> Opti
 }
 
 /// A number that is dragged or typed; it counts when the mouse or the field lets go.
-fn number(app: &mut App, (row, found): (Id, &Found), value: &Value, ui: &mut Ui) -> Option<Value> {
+fn number(app: &mut App, (row, found): (Id, &SettingMatch), value: &Value, ui: &mut Ui) -> Option<Value> {
     let is_whole = matches!(value, Value::Integer(_));
     let now = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))?;
     let mut number = match &app.finding.edited {
@@ -89,7 +89,7 @@ fn number(app: &mut App, (row, found): (Id, &Found), value: &Value, ui: &mut Ui)
 /// nothing in it leaves the setting out.
 fn text(
     app: &mut App,
-    (row, found): (Id, &Found),
+    (row, found): (Id, &SettingMatch),
     now: Option<&Value>,
     ui: &mut Ui,
 ) -> Option<Option<Value>> {
@@ -161,7 +161,7 @@ mod tests {
 
     #[test]
     fn typed_values_are_read_by_the_kind_of_their_setting() {
-        let all: Vec<Found> = ["groom", "body", "camera"].into_iter().flat_map(settings_of).collect();
+        let all: Vec<SettingMatch> = ["groom", "body", "camera"].into_iter().flat_map(settings_of).collect();
         let row = |key: &str| all.iter().find(|found| found.key == key).unwrap().row;
         let text = |text: &str| Some(Some(Value::String(text.to_owned())));
         let floats = |numbers: [f64; 3]| Some(Some(numbers.map(Value::Float).to_vec().into()));

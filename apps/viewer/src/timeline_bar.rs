@@ -52,7 +52,7 @@ impl App {
         self.seek(u32::try_from(i64::from(playhead) + frames).unwrap_or(0));
     }
 
-    /// Sets the first or the last frame of the part that is played to the shown one, or takes it away where it is that.
+    /// Sets the first (0) or the last (1) frame of the played range to the playhead; clears it where it is there already.
     pub(crate) fn mark(&mut self, end: usize) {
         let playhead = self.playhead();
         let mark = &mut self.playback.marks[end];

@@ -21,7 +21,7 @@ pub enum ScenePart {
 }
 
 impl ScenePart {
-    /// A scene with this part of another.
+    /// Returns a scene with this part taken from another.
     fn of(self, scene: &Scene, other: &Scene) -> Scene {
         let mut scene = scene.clone();
         match self {

@@ -133,7 +133,7 @@ fn zoom(app: &mut App, share: f32) {
     look(app, Camera { position: camera.target + offset, ..camera });
 }
 
-/// The picture as large as there is room.
+/// Shows the picture, as large as the room allows.
 pub fn show(app: &mut App, ui: &mut egui::Ui) {
     let room = ui.available_rect_before_wrap();
     fit(app, room.size(), ui.ctx().pixels_per_point());

@@ -28,14 +28,14 @@ pub(crate) struct Temporary {
     count: u64,
 }
 
-/// The temporary files of this process, for as long as it is held.
-pub(crate) struct Held(MutexGuard<'static, Option<Temporary>>);
+/// Access to the list of temporary files, which no other thread has meanwhile.
+pub(crate) struct ListGuard(MutexGuard<'static, Option<Temporary>>);
 
-pub(crate) fn hold() -> Held {
-    Held(TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner))
+pub(crate) fn hold() -> ListGuard {
+    ListGuard(TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
-impl Held {
+impl ListGuard {
     fn list(&mut self) -> &mut Temporary {
         self.0.get_or_insert_default()
     }
@@ -60,7 +60,7 @@ impl Held {
 
 /// Keeps this process from writing files, as long as it lives.
 pub struct Abandoned {
-    _held: Held,
+    _held: ListGuard,
 }
 
 /// Removes every unfinished file of this process, and lets none begin or get its name

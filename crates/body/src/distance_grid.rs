@@ -156,8 +156,8 @@ impl DistanceGrid {
         self.caps.as_ref()
     }
 
-    /// Numbers of triangles of a mesh that all nodes looked at while it was sampled, and of those whose exact distance they
-    /// needed, in a build with debug assertions; else 0.
+    /// Triangles that the sampling of a mesh visited, and those whose exact distance it computed, summed over all nodes; 0
+    /// in a build without debug assertions.
     #[doc(hidden)]
     pub fn looks(&self) -> [u64; 2] {
         self.looks

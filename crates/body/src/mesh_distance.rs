@@ -44,7 +44,7 @@ pub(crate) fn at_nodes(mesh: &Mesh, lattice: &Lattice) -> (Vec<f32>, [u64; 2]) {
     let tree = TriangleTree::new(&triangles, skin.clone());
     let layers = Layers::new(&triangles, skin);
     let far = FarNodes::new(&tree, lattice, LOOKS / lattice.len() as u64 * LOOKS_OF_A_NODE.start());
-    let mut found = vec![Found::default(); lattice.len()];
+    let mut found = vec![NodeDistance::default(); lattice.len()];
     let sufficed = AtomicBool::new(true);
     found.par_chunks_mut(lattice.layer_len() * SLAB).enumerate().for_each(|(slab, found)| {
         if !nearest_in_slab(&tree, &layers, far.as_ref(), lattice, slab * SLAB, found) {
@@ -76,9 +76,9 @@ pub(crate) fn skin_triangles(mesh: &Mesh, spacing: f32) -> Result<(Vec<u32>, f32
     Ok((skin, if is_turned { -1.0 } else { 1.0 }))
 }
 
-/// Nearest triangle of a node.
+/// Distance of a node from the nearest triangle.
 #[derive(Clone, Copy, Default)]
-struct Found {
+struct NodeDistance {
     /// \[cells\].
     distance: f32,
     triangle: u32,
@@ -91,7 +91,7 @@ fn nearest_in_slab(
     far: Option<&FarNodes>,
     lattice: &Lattice,
     first_layer: usize,
-    found: &mut [Found],
+    found: &mut [NodeDistance],
 ) -> bool {
     let layer_len = lattice.layer_len();
     let strides = [1, lattice.node_count.x as usize, layer_len];
@@ -126,14 +126,14 @@ fn nearest_in_slab(
         nearest[index] = here;
     }
     for (found, nearest) in found.iter_mut().zip(nearest) {
-        *found = Found { distance: nearest.squared.sqrt() as f32, triangle: nearest.triangle };
+        *found = NodeDistance { distance: nearest.squared.sqrt() as f32, triangle: nearest.triangle };
     }
     sufficed
 }
 
 /// Offers every node the triangles that are nearest to its neighbours, through the lattice and back: from what is
 /// near the surface, which is exact, the nearest spreads to all others \[Danielsson1980\].
-fn spread(tree: &TriangleTree, lattice: &Lattice, found: &mut [Found]) {
+fn spread(tree: &TriangleTree, lattice: &Lattice, found: &mut [NodeDistance]) {
     let strides = [1, lattice.node_count.x as usize, lattice.layer_len()];
     let last = (lattice.node_count - 1).to_array();
     let mut offer = |index: usize, back: bool| {
@@ -149,7 +149,7 @@ fn spread(tree: &TriangleTree, lattice: &Lattice, found: &mut [Found]) {
                 let mut nearest =
                     Nearest { squared: f64::from(here.distance).powi(2), triangle: here.triangle };
                 tree.offer(beside.triangle, node.as_dvec3(), &mut nearest);
-                here = Found { distance: nearest.squared.sqrt() as f32, triangle: nearest.triangle };
+                here = NodeDistance { distance: nearest.squared.sqrt() as f32, triangle: nearest.triangle };
             }
         }
         found[index] = here;

@@ -25,7 +25,7 @@ pub(crate) fn paint(layers: &Layers, lattice: &Lattice, first_layer: usize, near
     let high = (lattice.node_count - 1).as_dvec3().with_z(last_layer as f64);
     for triangle in layers.between(low.z - REACH, high.z + REACH) {
         let corners = &layers.triangles()[triangle as usize];
-        let seen = Seen::new(corners);
+        let seen = ProjectedTriangle::new(corners);
         seen.for_each_node_beside(low, high, |point| {
             let known = &mut nearest[lattice.index(point.as_uvec3()) - first_layer * layer_len];
             let height = (point - corners[0]).dot(seen.normal);
@@ -39,8 +39,8 @@ pub(crate) fn paint(layers: &Layers, lattice: &Lattice, first_layer: usize, near
     }
 }
 
-/// A triangle seen along an axis that its plane is not parallel to.
-struct Seen<'a> {
+/// A triangle projected along an axis to which its plane is not parallel.
+struct ProjectedTriangle<'a> {
     corners: &'a Corners,
     /// Unit normal of a plane that it lies in.
     normal: DVec3,
@@ -48,7 +48,7 @@ struct Seen<'a> {
     axes: [usize; 3],
 }
 
-impl<'a> Seen<'a> {
+impl<'a> ProjectedTriangle<'a> {
     fn new(corners: &'a Corners) -> Self {
         let [a, b, c] = *corners;
         let longest = [b - a, c - b, a - c].into_iter().fold(DVec3::ZERO, |longest, edge| {
@@ -161,7 +161,7 @@ mod tests {
                 _ => {}
             }
             let mut visited = std::collections::HashSet::new();
-            Seen::new(&corners).for_each_node_beside(low, high, |point| {
+            ProjectedTriangle::new(&corners).for_each_node_beside(low, high, |point| {
                 assert!(visited.insert(point.as_uvec3()), "{point} twice: {corners:?}");
             });
             for z in low.z as u32..=high.z as u32 {
@@ -192,7 +192,11 @@ mod tests {
                 } else {
                     [middle + 28.0 * DVec3::Y, rim(index), rim(index + 1)]
                 };
-                Seen::new(&corners).for_each_node_beside(DVec3::ZERO, DVec3::splat(60.0), |_| visits += 1);
+                ProjectedTriangle::new(&corners).for_each_node_beside(
+                    DVec3::ZERO,
+                    DVec3::splat(60.0),
+                    |_| visits += 1,
+                );
             }
             visits as f64
         };

@@ -267,7 +267,7 @@ fn found(folder: &Path, name: &str) -> Option<PathBuf> {
     named.find(|path| path.is_file())
 }
 
-/// The bytes of such a file.
+/// Reads a file that another one names: see [`found`].
 fn beside(folder: &Path, name: &str, limit: u64) -> Result<Vec<u8>, String> {
     let path = found(folder, name).ok_or("no file beside the body, or in a folder there")?;
     read_plain(&path, limit).map_err(|error| error.to_string())

@@ -55,8 +55,8 @@ fn triangles(faces: &Table, count: usize) -> Result<Vec<[u32; 3]>, Refusal> {
     Ok(triangles)
 }
 
-/// The triangles of strips, as scans of laboratories have them: each corner makes one with the two before it, of which
-/// every second is turned round; those with a corner twice only lead a strip elsewhere.
+/// Triangles of strips, the form of some laboratories' scans: each corner makes a triangle with the two before it, every
+/// second one turned round. A triangle that repeats a corner only leads the strip elsewhere.
 fn triangles_of_strips(strips: &Table, count: usize) -> Result<Vec<[u32; 3]>, Refusal> {
     let mut triangles = Vec::new();
     let Some(corners) = corners(strips) else { return Ok(triangles) };

@@ -203,8 +203,8 @@ impl PosedSkin {
         self.at_least_about(point, NONE, 0.0).0
     }
 
-    /// The same by a search that begins at a triangle near the point, and a triangle nearer to it. Bounds of no more than
-    /// `enough` \[m\] are not looked for: 0 where that triangle is so near already.
+    /// As [`Self::at_least`], by a search that begins at the triangle `before`; also returns the triangle it ended at. The bound
+    /// is 0, without a search, where `before` alone brings it to `enough` \[m\] or less.
     pub fn at_least_about(&self, point: Vec3, before: u32, enough: f32) -> (f32, u32) {
         if enough > 0.0
             && self.square_from(before, point).is_some_and(|squared| AT_LEAST * squared.sqrt() <= enough)
@@ -298,7 +298,7 @@ impl PosedSkin {
         SkinPlace { distance: side * away, normal: normal.normalize_or(Vec3::Y), triangle }
     }
 
-    /// Corners of a triangle at the end, that at the place of a vertex first.
+    /// Corners of a triangle at the end of the step, from the one that coincides with `vertex` on.
     pub(crate) fn corners_from(&self, triangle: u32, vertex: u32) -> [Vec3; 3] {
         let (at, first) = (self.solid.triangles[triangle as usize], self.solid.welded[vertex as usize]);
         let own = at.iter().position(|corner| self.solid.welded[*corner as usize] == first).unwrap_or(0);

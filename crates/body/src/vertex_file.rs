@@ -36,7 +36,7 @@ struct Numbers {
 
 /// Arrays of a file.
 #[derive(Default)]
-struct Found {
+struct MotionArrays {
     vertices: Option<Numbers>,
     faces: Option<Numbers>,
     times: Option<Numbers>,
@@ -223,7 +223,7 @@ fn trailing_number(file: &Path) -> u64 {
 }
 
 /// The arrays of a file that tell of a motion.
-fn arrays(path: &Path) -> Result<Found, BodyError> {
+fn arrays(path: &Path) -> Result<MotionArrays, BodyError> {
     let unread = |source| BodyError::Read { path: path.into(), source };
     let malformed = |error: &dyn std::fmt::Display| {
         refused(path, (format!("a file that cannot be read ({error})"), "arrays as numpy writes them"))
@@ -233,7 +233,7 @@ fn arrays(path: &Path) -> Result<Found, BodyError> {
         let bytes = read_plain(path, FILE_LIMIT).map_err(unread)?;
         let Bare { kind, shape, bytes } = Bare::new(&bytes).map_err(|error| malformed(&error))?;
         let vertices = Some(Numbers { kind, shape, bytes: bytes.into_owned() });
-        return Ok(Found { vertices, ..Found::default() });
+        return Ok(MotionArrays { vertices, ..MotionArrays::default() });
     }
     let file = File::open(path).map_err(unread)?;
     let mut npz = Npz::new(BufReader::new(file)).map_err(|error| malformed(&error))?;
@@ -254,10 +254,10 @@ fn arrays(path: &Path) -> Result<Found, BodyError> {
     let teleports = array(&["teleports"])?.map(|marks| marks.kind.numbers(&marks.bytes).collect());
     let teleports = teleports.unwrap_or_default();
     let has_poses = npz.names().any(|name| name == "poses");
-    Ok(Found { vertices, faces, times, rate, teleports, has_poses })
+    Ok(MotionArrays { vertices, faces, times, rate, teleports, has_poses })
 }
 
-impl Found {
+impl MotionArrays {
     /// The vertices of all frames.
     fn frames(&self) -> Result<Vec<Vec<Vec3>>, Refusal> {
         const EXPECTED: &str =

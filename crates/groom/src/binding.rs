@@ -49,7 +49,7 @@ pub use frames::Frames;
 pub use influence::{Influence, MOST_INFLUENCES};
 pub use together::closing;
 
-use frames::Frame;
+use frames::PointFrame;
 use influence::{Followed, blocks};
 
 /// Lengths within this share of those at rest are those at rest.
@@ -144,7 +144,7 @@ impl Binding {
     /// is; each further one turns as little as possible against the one before.
     pub fn follow(&self, positions: &[Vec3Lanes], body: &BodyFrame, frames: &mut Frames) {
         let count = self.guides.points_per_strand();
-        frames.points.resize(self.guides.strand_count() * count, Frame::default());
+        frames.points.resize(self.guides.strand_count() * count, PointFrame::default());
         frames.scales.resize(self.guides.strand_count(), 1.0);
         let guides = frames.points.par_chunks_mut(count).zip_eq(&mut frames.scales).enumerate();
         guides.for_each(|(guide, (frames, scale))| {
@@ -164,7 +164,7 @@ impl Binding {
                 if from != to && from != Vec3::ZERO && to != Vec3::ZERO {
                     rotation = (Quat::from_rotation_arc(from, to) * rotation).normalize();
                 }
-                *frame = Frame::new(rotation, rest(point), now(point));
+                *frame = PointFrame::new(rotation, rest(point), now(point));
             }
             let found = length / own.max(f32::MIN_POSITIVE);
             // Stretch left by the solver is not a change of length.

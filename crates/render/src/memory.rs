@@ -29,9 +29,9 @@ const PART_BYTES: u64 = 20;
 const GRID_CELLS: u64 = 43 * 43 * 43;
 const CELL_BYTES: u64 = 26 * 16 * 4 + 640;
 
-/// Drawn parts of a groom that take memory.
+/// Everything of a drawn groom that takes memory.
 #[derive(Clone, Copy, Debug)]
-pub struct Drawn<'a> {
+pub struct DrawnGroom<'a> {
     /// Number of guides.
     pub guide_count: usize,
     /// Points on each.
@@ -46,7 +46,7 @@ pub struct Drawn<'a> {
     pub own_color: Option<Vec3>,
 }
 
-impl Drawn<'_> {
+impl DrawnGroom<'_> {
     /// Memory of drawing close up, an upper estimate.
     pub fn memory(&self, level_of_detail: &LevelOfDetail) -> Vec<Need> {
         let of = [self.guide_count, self.points_per_strand];
@@ -123,7 +123,7 @@ mod tests {
         let lights = [Light::default(); 32];
         let (picture, full) = (PictureSettings::sized(64, 64), LevelOfDetail::full());
         let drawn = |look: &Look, guide_count| {
-            let drawn = Drawn {
+            let drawn = DrawnGroom {
                 guide_count,
                 points_per_strand: 16,
                 look,
@@ -146,7 +146,7 @@ mod tests {
         let (look, picture) = (Look::brown(), PictureSettings::sized(64, 64));
         let texels = |own_color| {
             let lights = &[Light::default()];
-            let drawn = Drawn {
+            let drawn = DrawnGroom {
                 guide_count: 100,
                 points_per_strand: 16,
                 look: &look,

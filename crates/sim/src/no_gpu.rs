@@ -46,6 +46,28 @@ impl ComingPoints {
     }
 }
 
+/// Carries points between two states.
+#[derive(Debug)]
+pub enum PointCarrier {}
+
+#[expect(missing_docs, clippy::missing_errors_doc, reason = "none of it can be called")]
+impl PointCarrier {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        match *gpu {}
+    }
+
+    pub fn carry(
+        &mut self,
+        _: [&Buffer<f32>; 2],
+        _: [&BodyFrame; 3],
+        _: f32,
+        _: [usize; 2],
+        _: &Buffer<f32>,
+    ) -> Result<(), GpuError> {
+        match *self {}
+    }
+}
+
 /// No shader modules.
 pub fn modules() -> Vec<(&'static str, &'static str)> {
     Vec::new()

@@ -26,7 +26,7 @@ pub struct RodReport {
 }
 
 impl RodReport {
-    /// Both together, of different strands.
+    /// Joins the reports of two sets of strands.
     pub(crate) fn with(self, other: Self) -> Self {
         Self {
             residual: self.residual.max(other.residual),

@@ -116,6 +116,33 @@ impl State {
         between([&self.previous_positions, &self.positions], share, positions);
     }
 
+    /// As [`State::interpolated`], in the root frames of the strands and carried by them: `bodies` are those of the last two
+    /// steps, `body` that of the moment. Points keep their way about a body that moves, where straight lines would cut it.
+    pub fn carried(
+        &self,
+        [before, after]: [&BodyFrame; 2],
+        body: &BodyFrame,
+        share: f32,
+        positions: &mut Vec<Vec3Lanes>,
+    ) {
+        let points_per_strand = self.points_per_strand().max(1);
+        positions.resize(self.positions.len(), Vec3Lanes::default());
+        let old = self.previous_positions.par_chunks(points_per_strand);
+        let pairs = old.zip(self.positions.par_chunks(points_per_strand));
+        let blocks = positions.par_chunks_mut(points_per_strand).zip(pairs).enumerate();
+        blocks.for_each(|(block, (positions, (old, new)))| {
+            for lane in 0..LANES {
+                let root = |body: &BodyFrame| body.root(block * LANES + lane);
+                let [from_before, from_after] = [before, after].map(|body| root(body).inverse());
+                let to = root(body);
+                for ((position, old), new) in positions.iter_mut().zip(old).zip(new) {
+                    let [old, new] = [from_before.point(old.get(lane)), from_after.point(new.get(lane))];
+                    position.set(lane, to.point(old.lerp(new, share)));
+                }
+            }
+        });
+    }
+
     /// The state after everything in the world moved by a way \[m\], to be read: nothing goes on from it.
     pub fn moved(&self, by: Vec3) -> Self {
         if by == Vec3::ZERO {

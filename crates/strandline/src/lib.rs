@@ -1,12 +1,14 @@
 //! Hair for people who make pictures move: load or grow a groom, simulate it, draw it.
 //!
 //! ```
-//! use strandline::{Backend, Camera, Groom, Hair, Look, Pose, Settings};
+//! use strandline::{Camera, Groom, Hair, Look, Pose, Scene, Sources};
 //!
 //! # fn main() -> Result<(), strandline::Error> {
 //! let mut groom = Groom::empty(8e-5); // or Groom::load("wavy.hair")?
 //! groom.push((0..16).map(|point| glam::Vec3::new(0.01 * point as f32, 0.0, 0.0)));
-//! let mut hair = Hair::new(Backend::auto(), &groom, &Settings::default())?;
+//! let mut scene = Scene::default();
+//! scene.groom.file = Some("mine".into());
+//! let mut hair = Hair::from_sources(&scene, &Sources::default().with_groom("mine", groom))?;
 //! for _ in 0..24 {
 //!     hair.step(1.0 / 60.0, &Pose::IDENTITY)?;
 //! }

@@ -68,7 +68,7 @@ struct Known {
 
 /// Exceptions found in the tree.
 #[derive(Debug, Default)]
-struct Found {
+struct Exceptions {
     arrows: Vec<String>,
     files: BTreeMap<String, usize>,
     functions: BTreeMap<String, usize>,
@@ -106,8 +106,8 @@ fn problems(root: &Path) -> Result<Vec<String>> {
 /// Folders of code.
 const PLACES: [&str; 7] = ["apps", "checks", "crates", "examples", "fuzz", "python", "xtask"];
 
-fn look(root: &Path) -> Result<Found> {
-    let mut found = Found::default();
+fn look(root: &Path) -> Result<Exceptions> {
+    let mut found = Exceptions::default();
     for (folder, allowed) in ARROWS {
         let manifest = std::fs::read_to_string(root.join(folder).join("Cargo.toml"))?;
         found.arrows.extend(wrong_arrows(folder, &manifest, allowed)?);
@@ -118,7 +118,7 @@ fn look(root: &Path) -> Result<Found> {
     Ok(found)
 }
 
-impl Found {
+impl Exceptions {
     /// Looks at a folder: as one program or library where it has its root, else at each file and folder in it.
     fn look_below(&mut self, root: &Path, folder: &str) -> Result<()> {
         let here = root.join(folder);
@@ -217,7 +217,7 @@ fn wrong_arrows(folder: &str, manifest: &str, allowed: &[&str]) -> Result<Vec<St
     Ok(ours.map(|name| format!("{folder} uses {name}, which does not lie below it")).collect())
 }
 
-fn compare(found: &Found, known: &Known) -> Vec<String> {
+fn compare(found: &Exceptions, known: &Known) -> Vec<String> {
     let mut problems = found.arrows.clone();
     for (what, found, known, most) in [
         ("lines", &found.files, &known.files, "400, a shader 200"),
@@ -277,7 +277,7 @@ mod tests {
             ("room/given_on.rs", "use crate::Step;"),
         ];
         let wrong = |folder: &str| {
-            let mut found = Found::default();
+            let mut found = Exceptions::default();
             let files = planted.map(|(file, code)| (file.to_owned(), code.to_owned()));
             found.find_circles(folder, files.to_vec());
             found.arrows
@@ -300,7 +300,7 @@ mod tests {
         assert!(tunnels("use strandline::low_level::sim::Drive;"));
         assert!(tunnels("use strandline::{Scene, low_level::sim};"));
         assert!(!tunnels("signal_hook::low_level::exit(1)"));
-        let mut found = Found::default();
+        let mut found = Exceptions::default();
         let file = ("bench/forms.rs".to_owned(), "use strandline::low_level::sim;".to_owned());
         found.measure("apps/cli/src", std::slice::from_ref(&file));
         assert!(found.arrows.len() == 1 && found.arrows[0].starts_with("apps/cli/src/bench/forms.rs"));
@@ -311,8 +311,11 @@ mod tests {
     #[test]
     fn what_is_listed_may_stay_but_not_grow_and_leaves_the_list_when_mended() {
         let circle = BTreeSet::from(["a.rs".to_owned(), "b.rs".to_owned()]);
-        let found =
-            Found { files: [("a.rs".into(), 500)].into(), circles: vec![circle.clone()], ..Found::default() };
+        let found = Exceptions {
+            files: [("a.rs".into(), 500)].into(),
+            circles: vec![circle.clone()],
+            ..Exceptions::default()
+        };
         assert_eq!(compare(&found, &Known::default()).len(), 2);
         let known = |lines| Known {
             files: [("a.rs".into(), lines)].into(),
@@ -321,9 +324,9 @@ mod tests {
         };
         assert!(compare(&found, &known(500)).is_empty());
         assert_eq!(compare(&found, &known(499)).len(), 1);
-        assert_eq!(compare(&Found::default(), &known(500)).len(), 2);
+        assert_eq!(compare(&Exceptions::default(), &known(500)).len(), 2);
         // Circles of folders are a list of their own.
-        let found = Found { folders: vec![circle.clone()], ..Found::default() };
+        let found = Exceptions { folders: vec![circle.clone()], ..Exceptions::default() };
         assert_eq!(compare(&found, &Known { circles: vec![circle.clone()], ..Known::default() }).len(), 2);
         assert!(compare(&found, &Known { folders: vec![circle], ..Known::default() }).is_empty());
     }

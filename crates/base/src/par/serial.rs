@@ -149,7 +149,7 @@ pub trait ParallelIterator: IntoIterator + Sized {
         self.into_iter().collect()
     }
 
-    /// Items together, in place of those of a vector.
+    /// Replaces the elements of a vector by the items.
     fn collect_into_vec(self, target: &mut Vec<Self::Item>) {
         target.clear();
         target.extend(self);
@@ -226,7 +226,7 @@ pub trait ParallelSlice<T> {
     /// Pieces of so many elements, the last one of fewer.
     fn par_chunks(&self, count: usize) -> Serial<std::slice::Chunks<'_, T>>;
 
-    /// Pieces of so many elements, without those that are left.
+    /// Chunks of `count` elements, without the remainder.
     fn par_chunks_exact(&self, count: usize) -> Serial<std::slice::ChunksExact<'_, T>>;
 }
 
@@ -249,7 +249,7 @@ pub trait ParallelSliceMut<T> {
     /// Its elements.
     fn par_iter_mut(&mut self) -> Serial<std::slice::IterMut<'_, T>>;
 
-    /// Pieces of so many elements, the last one of fewer.
+    /// Chunks of `count` elements, the last one of fewer.
     fn par_chunks_mut(&mut self, count: usize) -> Serial<std::slice::ChunksMut<'_, T>>;
 
     /// Pieces of so many elements, without those that are left.

@@ -85,7 +85,7 @@ impl Clips {
         let clip = self.find(name)?;
         let samplers = clip.get("samplers").and_then(Value::as_array).map_or(&[][..], |all| &all[..]);
         let mut tracks = Vec::new();
-        let (mut pointers, mut held) = (0, Held::default());
+        let (mut pointers, mut held) = (0, ClipSize::default());
         for channel in clip.get("channels").and_then(Value::as_array).into_iter().flatten() {
             let target = channel.get("target");
             let path = target.and_then(|target| target.get("path")).and_then(Value::as_str);
@@ -137,14 +137,14 @@ fn told_apart(names: Vec<String>) -> Vec<String> {
     names.into_iter().map(unique).collect()
 }
 
-/// Numbers of the tracks that were read, and the memory that their reader took \[byte\].
+/// Size of the tracks read so far: their numbers, and the memory of their reader \[byte\].
 #[derive(Default)]
-struct Held {
+struct ClipSize {
     numbers: usize,
     bytes: u64,
 }
 
-impl Held {
+impl ClipSize {
     /// Counts the numbers of a track before they are read.
     ///
     /// # Errors
@@ -185,7 +185,7 @@ fn track(
     node: usize,
     path: Option<&str>,
     sampler: &Value,
-    held: &mut Held,
+    held: &mut ClipSize,
 ) -> Result<Option<Track>, Fault> {
     let (property, width) = match path {
         Some("translation") => (Property::Translation, 3),

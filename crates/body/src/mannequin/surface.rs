@@ -113,7 +113,7 @@ impl Slab<'_> {
         self.origin + at * self.spacing
     }
 
-    /// Writes a value to a box, or the ones that are there.
+    /// Fills a box of nodes with a value; without one, with the distance at each node.
     fn write(&mut self, from: UVec3, to: UVec3, value: Option<f32>) {
         for z in from.z..to.z {
             for y in from.y..to.y {

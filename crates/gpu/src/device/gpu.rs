@@ -316,7 +316,10 @@ impl Gpu {
         Err(GpuError::Limit { adapter: self.name(), what, needed: bytes, limit })
     }
 
-    /// Takes bytes of memory, if they may be had.
+    /// Takes a number of bytes of the allowed memory.
+    ///
+    /// # Errors
+    /// [`GpuError::OutOfMemory`] where less is left.
     pub(crate) fn take_memory(&self, what: &str, bytes: u64) -> Result<(), GpuError> {
         let mut memory = self.memory();
         if bytes > memory.most.saturating_sub(memory.used) {

@@ -53,7 +53,7 @@ pub struct Declaration {
 }
 
 impl Declaration {
-    /// A text that no other declaration has.
+    /// Key that is unique to this declaration.
     pub(crate) fn key(&self) -> String {
         // The source is static: its place stands for it.
         format!("{:p} {} {:?}", self.source, self.entry, self.fragment)

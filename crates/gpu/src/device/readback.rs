@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use bytemuck::Pod;
 
-use super::transfer::{Held, Mapping, mapped};
+use super::transfer::{Mapping, StagingMemory, mapped};
 use crate::{Buffer, Gpu, GpuError, Transfer};
 
 /// Buffers to be copied back together.
@@ -60,7 +60,7 @@ impl<'a> Readback<'a> {
     /// # Errors
     /// The device was lost or has no memory left.
     pub fn begin(self, gpu: &Gpu) -> Result<Transfer, GpuError> {
-        let held = Held::new(gpu, self.bytes as u64)?;
+        let held = StagingMemory::new(gpu, self.bytes as u64)?;
         if self.bytes == 0 {
             return Ok(Transfer::new(held, None));
         }
@@ -92,7 +92,7 @@ impl Copied {
 /// Memory of the host's that copies go to again and again.
 #[derive(Debug)]
 pub struct Download {
-    held: Held,
+    held: StagingMemory,
     staging: wgpu::Buffer,
 }
 
@@ -102,7 +102,7 @@ impl Download {
     /// # Errors
     /// The device was lost or has no memory left.
     pub fn new(gpu: &Gpu, bytes: u64) -> Result<Self, GpuError> {
-        let held = Held::new(gpu, bytes)?;
+        let held = StagingMemory::new(gpu, bytes)?;
         let staging = gpu.ask("readback", || {
             gpu.device().create_buffer(&wgpu::BufferDescriptor {
                 label: Some("readback"),

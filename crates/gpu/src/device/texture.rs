@@ -23,7 +23,7 @@ impl Texture {
         Self::for_uses(gpu, name, size, format, wgpu::TextureUsages::empty())
     }
 
-    /// The same that kernels write too, see [`Access::Written`](crate::Access::Written).
+    /// As [`Texture::new`], a texture that kernels write too: see [`Access::Written`](crate::Access::Written).
     ///
     /// # Errors
     /// As [`Texture::new`].

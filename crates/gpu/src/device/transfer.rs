@@ -14,14 +14,14 @@ const LOOK: Duration = Duration::from_millis(10);
 /// A copy on its way from the device: looked for now and then, waited for, or awaited.
 #[derive(Debug)]
 pub struct Transfer {
-    held: Held,
+    held: StagingMemory,
     /// Buffer of the copy; `None` if nothing is copied.
     staging: Option<(wgpu::Buffer, Mapping)>,
 }
 
 impl Transfer {
     /// The copy of a submission into a staging buffer; `None` copies nothing.
-    pub(super) fn new(held: Held, staging: Option<(wgpu::Buffer, wgpu::SubmissionIndex)>) -> Self {
+    pub(super) fn new(held: StagingMemory, staging: Option<(wgpu::Buffer, wgpu::SubmissionIndex)>) -> Self {
         let staging = staging.map(|(staging, submission)| {
             let mapping = Mapping::new(&staging, Some(submission));
             (staging, mapping)
@@ -91,22 +91,22 @@ impl Future for Transfer {
     }
 }
 
-/// Memory that a copy takes, given back with this.
+/// Memory of a copy, given back when this is dropped.
 #[derive(Debug)]
-pub(super) struct Held {
+pub(super) struct StagingMemory {
     pub gpu: Gpu,
     bytes: u64,
 }
 
-impl Held {
-    /// Takes so much.
+impl StagingMemory {
+    /// Takes a number of bytes of the device's memory.
     pub fn new(gpu: &Gpu, bytes: u64) -> Result<Self, GpuError> {
         gpu.take_memory("the copy back", bytes)?;
         Ok(Self { gpu: gpu.clone(), bytes })
     }
 }
 
-impl Drop for Held {
+impl Drop for StagingMemory {
     fn drop(&mut self) {
         self.gpu.give_memory_back(self.bytes);
     }
@@ -122,25 +122,25 @@ pub(super) struct Mapping {
 
 #[derive(Debug, Default)]
 struct Arrival {
-    seen: Mutex<Seen>,
+    seen: Mutex<ArrivalState>,
     /// Signalled when it arrives.
     arrived: Condvar,
 }
 
 #[derive(Debug, Default)]
-struct Seen {
+struct ArrivalState {
     mapped: Option<Result<(), String>>,
     waker: Option<Waker>,
 }
 
 impl Arrival {
-    fn lock(&self) -> MutexGuard<'_, Seen> {
+    fn lock(&self) -> MutexGuard<'_, ArrivalState> {
         self.seen.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Waits until it arrives, but not longer than a time.
     fn wait(&self, most: Duration) {
-        let absent = |seen: &mut Seen| seen.mapped.is_none();
+        let absent = |seen: &mut ArrivalState| seen.mapped.is_none();
         self.arrived.wait_timeout_while(self.lock(), most, absent).map(drop).ok();
     }
 }

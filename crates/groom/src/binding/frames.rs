@@ -5,13 +5,13 @@ use glam::{Mat3, Quat, Vec3, Vec4};
 /// A frame of a guide's point as a map from rest to now.
 #[repr(C, align(64))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Frame {
+pub(super) struct PointFrame {
     /// Images of the three axes, and the translation \[m\], world space. The map is of positions at rest
     /// \[m\], head space.
     pub(super) columns: [Vec4; 4],
 }
 
-impl Frame {
+impl PointFrame {
     pub(super) fn new(rotation: Quat, rest: Vec3, now: Vec3) -> Self {
         let matrix = Mat3::from_quat(rotation);
         let translation = now - matrix * rest;
@@ -24,7 +24,7 @@ impl Frame {
 #[derive(Clone, Debug, Default)]
 pub struct Frames {
     /// Shape `[guide][point]`.
-    pub(super) points: Vec<Frame>,
+    pub(super) points: Vec<PointFrame>,
     pub(super) scales: Vec<f32>,
 }
 

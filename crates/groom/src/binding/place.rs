@@ -6,7 +6,7 @@ use strandline_base::vec3x8::{Rigid, Vec3x8};
 use strandline_body::{BodyFrame, Solids};
 use wide::f32x8;
 
-use super::frames::{Frame, Frames};
+use super::frames::{Frames, PointFrame};
 use super::influence::{Followed, MOST_INFLUENCES};
 use super::{Binding, Surface};
 use crate::{LANES, LaneSet, Vec3Lanes, block_count, outside::placed_outside};
@@ -135,7 +135,7 @@ fn scales(followed: &[Followed; MOST_INFLUENCES], frames: &Frames) -> f32x8 {
 /// Place by the guides of a point that is at `rest` at rest \[m\].
 fn blend(
     followed: &[Followed; MOST_INFLUENCES],
-    frames: &[Frame],
+    frames: &[PointFrame],
     point: usize,
     count: usize,
     rest: &Vec3Lanes,

@@ -24,7 +24,8 @@ pub(super) fn lengthen(points: &[Vec3], more: f32) -> Vec<Vec3> {
     points.iter().map(|point| points[0] + scale * (*point - points[0])).collect()
 }
 
-/// The strand after a share of the way to the strand in the middle: none at the root, all of it at the tip.
+/// Moves a strand toward the strand in the middle by a share of the way, which grows from none at the root to all of it
+/// at the tip.
 pub(super) fn clump(points: &[Vec3], middle: &[Vec3], share: f32) -> Vec<Vec3> {
     let (shares, to) = (shares(points), self::shares(middle));
     following(points, |point| {

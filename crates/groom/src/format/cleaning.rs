@@ -215,7 +215,7 @@ fn tiny_note(tiny: &[usize]) -> String {
     format!("{strands} shorter than 1 mm and than 2 % of the median")
 }
 
-/// Widths that hair can have in place of those that it cannot, and a note.
+/// Replaces widths that no hair has, with a note; `None` where there are none of them.
 fn widths(groom: &Groom) -> Option<(Widths, String)> {
     if groom.widths == Widths::Constant(0.0) {
         // A file without widths.

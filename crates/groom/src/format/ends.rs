@@ -65,8 +65,8 @@ impl Groom {
         }
     }
 
-    /// Strands that are stored from tip to root, as widths or the other strands show it, in any units; shape `[strand]`.
-    /// `None` where nothing shows any.
+    /// True for strands that are stored from tip to root, judged by their widths or by the other strands, in any units;
+    /// shape `[strand]`. `None` where there are no signs of such strands.
     pub fn from_tip(&self) -> Option<Vec<bool>> {
         if self.strand_count() < FEWEST
             || (0..self.strand_count()).any(|strand| self.strand(strand).is_empty())

@@ -138,7 +138,7 @@ fn groom(grown: Vec<Grown>, guide_count: usize) -> Groom {
 }
 
 impl StyleSettings {
-    /// Largest memory of growing so many strands: each as it is marched, shaped and finally a part of the groom.
+    /// Upper estimate of the memory for growing a number of strands: each as marched, as shaped, and as part of the groom.
     pub fn memory(&self, drawn: usize) -> Need {
         let marched = 2 * (self.length / STEP).ceil() as u64;
         let each = 12 * (marched + 2 * self.points() as u64) + 3 * size_of::<Strand>() as u64;

@@ -40,7 +40,7 @@ pub struct Strand {
     pub points: Vec<Vec3>,
 }
 
-/// Draws a guide's root near the parting toward it, so that it is a line and not a lane.
+/// Moves a root near the parting toward it, so that the parting is a line rather than a lane.
 pub fn beside_parting(settings: &StyleSettings, mannequin: &Mannequin, root: Root) -> Root {
     toward_parting(settings, mannequin, root, PARTING_REACH[0], f32::sqrt)
 }

@@ -7,8 +7,9 @@ use strandline_groom::Guides;
 use super::shade::skin::Skin;
 use super::strands::bind::{Carried, bind, drawn_points};
 use super::{
-    Curves, Draw, DrawInput, Found, Lit, Occlusion, Radiances, Resolve, Scattering, Scheuermann, Seen,
-    Shading, SkinColor, interpolate, keep_outside, layer_colors, opacity_depth, opacity_layers, tessellate,
+    Curves, Draw, DrawInput, LazyRadiances, Lit, LitRuns, Occlusion, Radiances, Resolve, Scattering,
+    Scheuermann, Shading, SkinColor, interpolate, keep_outside, layer_colors, opacity_depth, opacity_layers,
+    tessellate,
 };
 use crate::fibre::FibreModel;
 use crate::frame::edges::smooth_edges;
@@ -33,7 +34,7 @@ pub(super) struct Scratch {
     pub shadows: Shadows,
     pub occlusion: Occlusion,
     pub scattering: Scattering,
-    pub found: Found,
+    pub found: LitRuns,
     /// Colours of the groom.
     pub own_colors: Option<OwnColors>,
     pub samples: Samples,
@@ -56,7 +57,7 @@ impl Scratch {
             shadows: Shadows::default(),
             occlusion: Occlusion::default(),
             scattering: Scattering::default(),
-            found: Found::default(),
+            found: LitRuns::default(),
             own_colors: OwnColors::of(guides),
             samples: Samples::default(),
             draw,
@@ -66,7 +67,7 @@ impl Scratch {
 }
 
 /// A frame while it runs.
-pub(super) struct Frame<'a> {
+pub(super) struct FrameRun<'a> {
     pub scratch: &'a mut Scratch,
     pub settings: &'a PictureSettings,
     /// Lights with an area as the places on them.
@@ -78,7 +79,7 @@ pub(super) struct Frame<'a> {
     pub picture: Option<&'a mut Picture>,
 }
 
-impl Frame<'_> {
+impl FrameRun<'_> {
     /// Runs a stage.
     pub fn run(&mut self, stage: Stage) {
         let Self { settings, input, level, picture, .. } = self;
@@ -157,7 +158,7 @@ impl Frame<'_> {
     }
 
     fn draw(&mut self) {
-        let Frame { settings, input, layers_of, .. } = *self;
+        let FrameRun { settings, input, layers_of, .. } = *self;
         let FrameInput { look, body_look, lights, camera, .. } = *input;
         let Scratch { strands, shadows, occlusion, scattering, found, own_colors, draw, samples, .. } =
             &mut *self.scratch;
@@ -166,7 +167,7 @@ impl Frame<'_> {
         let lit = lit(input, shadows, own_colors);
         let shading = shading(strands, &lit, occlusion, scattering);
         let light = match shading.as_deref() {
-            Some(shading) if !layered => Radiances::Seen(Seen::new(strands, found, shading)),
+            Some(shading) if !layered => Radiances::Lazy(LazyRadiances::new(strands, found, shading)),
             _ => Radiances::Known(strands),
         };
         let draw_input = DrawInput {

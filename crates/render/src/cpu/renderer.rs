@@ -6,11 +6,11 @@ use strandline_base::timed;
 use strandline_body::{Mesh, Solids};
 use strandline_groom::{Binding, Guides};
 
-use super::frame::{Frame, Scratch};
+use super::frame::{FrameRun, Scratch};
 use super::strands::bind::Carried;
 use crate::frame::motion::Before;
 use crate::frame::samples::Samples;
-use crate::frame::{Drawn, Stage, stages};
+use crate::frame::{DrawnStrands, Stage, stages};
 use crate::lights::{at_samples, first_sample};
 use crate::strands::check_strands;
 use crate::{FrameInput, FrameReport, Picture, PictureSettings, RenderError};
@@ -121,11 +121,17 @@ impl Renderer {
         input.check_memory(strand_count, points, &level, &self.settings)?;
         let lights = at_samples(input.lights, input.look.suns());
         let layers_of = self.layers_of.map(|light| first_sample(input.lights, light));
-        let drawn = if self.scratch.carried.is_some() { Drawn::Carried } else { Drawn::Guides };
+        let drawn = if self.scratch.carried.is_some() { DrawnStrands::Carried } else { DrawnStrands::Guides };
         let last = picture.is_some();
         let input = &FrameInput { lights: &lights, ..*input };
-        let mut frame =
-            Frame { scratch: &mut self.scratch, settings: &self.settings, input, level, layers_of, picture };
+        let mut frame = FrameRun {
+            scratch: &mut self.scratch,
+            settings: &self.settings,
+            input,
+            level,
+            layers_of,
+            picture,
+        };
         let mut report = FrameReport { strands: level.drawn_strands(strand_count), ..FrameReport::default() };
         for stage in stages(drawn).filter(|stage| last || *stage != Stage::Resolve) {
             timed(&mut report.seconds, stage.name(), || frame.run(stage));

@@ -3,7 +3,7 @@ use strandline_body::{Aabb, BodyFrame};
 use strandline_groom::{Guides, Vec3Lanes};
 
 use super::middle;
-use crate::memory::{Drawn, check_lights};
+use crate::memory::{DrawnGroom, check_lights};
 
 use crate::{BodyLook, Camera, DetailLevel, LevelOfDetail, Light, Look, PictureSettings, RenderError};
 
@@ -91,6 +91,6 @@ impl FrameInput<'_> {
     ) -> Result<(), RenderError> {
         // The texels of shadow maps are chosen already.
         let Self { look, lights, .. } = *self;
-        Drawn { guide_count, points_per_strand, look, lights, picture, own_color: None }.check(level)
+        DrawnGroom { guide_count, points_per_strand, look, lights, picture, own_color: None }.check(level)
     }
 }

@@ -41,7 +41,7 @@ macro_rules! stages {
             }
 
             /// True if a frame of such strands has it.
-            fn is_in(self, strands: Drawn) -> bool {
+            fn is_in(self, strands: DrawnStrands) -> bool {
                 match self {
                     $(Self::$stage => $is_in(strands),)*
                 }
@@ -71,23 +71,23 @@ stages! {
 
 /// Drawn strands, by what moves them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Drawn {
+pub(crate) enum DrawnStrands {
     /// The guides themselves.
     Guides,
     /// Strands that guides carry.
     Carried,
 }
 
-fn always(_: Drawn) -> bool {
+fn always(_: DrawnStrands) -> bool {
     true
 }
 
-fn carried(strands: Drawn) -> bool {
-    strands == Drawn::Carried
+fn carried(strands: DrawnStrands) -> bool {
+    strands == DrawnStrands::Carried
 }
 
 /// The stages of a frame of such strands, in order.
-pub(crate) fn stages(strands: Drawn) -> impl Iterator<Item = Stage> {
+pub(crate) fn stages(strands: DrawnStrands) -> impl Iterator<Item = Stage> {
     Stage::ALL.iter().copied().filter(move |stage| stage.is_in(strands))
 }
 
@@ -125,8 +125,11 @@ mod tests {
     #[test]
     fn only_carried_strands_are_bound_and_all_else_is_in_every_frame() {
         let of = |strands| stages(strands).map(Stage::name).collect::<Vec<_>>();
-        assert_eq!(of(Drawn::Carried).split_first(), Some((&"bind", of(Drawn::Guides).as_slice())));
-        assert_eq!(of(Drawn::Guides)[..2], ["tessellate", "interpolate"]);
-        assert_eq!(of(Drawn::Guides).last(), Some(&"resolve"));
+        assert_eq!(
+            of(DrawnStrands::Carried).split_first(),
+            Some((&"bind", of(DrawnStrands::Guides).as_slice()))
+        );
+        assert_eq!(of(DrawnStrands::Guides)[..2], ["tessellate", "interpolate"]);
+        assert_eq!(of(DrawnStrands::Guides).last(), Some(&"resolve"));
     }
 }

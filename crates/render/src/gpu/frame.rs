@@ -10,11 +10,11 @@ use super::shade::lit_pixels;
 use super::shadow::fit;
 use super::stages::Stages;
 use super::{buffers, codes, draw};
-use crate::frame::{Drawn, Stage, stages};
+use crate::frame::{DrawnStrands, Stage, stages};
 use crate::scatter::ways::{DIRECTIONS, SETS};
 
 /// Kernels, drawings and buffers of a frame.
-pub(super) struct Bounds<'a> {
+pub(super) struct FrameKernels<'a> {
     /// Places strands that guides carry; empty without such.
     pub bound: Vec<(Bound, [u32; 3])>,
     pub tessellate: Bound,
@@ -25,12 +25,12 @@ pub(super) struct Bounds<'a> {
     pub resolve: &'a BoundDrawing,
     pub maps: &'a Maps,
     pub target: &'a wgpu::TextureView,
-    pub held: Held<'a>,
+    pub held: KeptResources<'a>,
 }
 
 /// Kernels and buffers that a renderer keeps from frame to frame.
 #[derive(Clone, Copy)]
-pub(super) struct Held<'a> {
+pub(super) struct KeptResources<'a> {
     pub groom: &'a Groom,
     pub stages: &'a Stages,
     /// Scattered light, once a look asked for it.
@@ -41,19 +41,19 @@ pub(super) struct Held<'a> {
 }
 
 /// A frame while it is recorded.
-struct Frame<'a> {
+struct FrameRecording<'a> {
     scene: &'a Scene<'a>,
-    bounds: &'a Bounds<'a>,
+    bounds: &'a FrameKernels<'a>,
 }
 
 /// Records every stage in order.
-pub(super) fn record(recorder: &mut Recorder, scene: &Scene, bounds: &Bounds) {
-    let frame = Frame { scene, bounds };
-    let drawn = if bounds.bound.is_empty() { Drawn::Guides } else { Drawn::Carried };
+pub(super) fn record(recorder: &mut Recorder, scene: &Scene, bounds: &FrameKernels) {
+    let frame = FrameRecording { scene, bounds };
+    let drawn = if bounds.bound.is_empty() { DrawnStrands::Guides } else { DrawnStrands::Carried };
     stages(drawn).for_each(|stage| frame.record(recorder, stage));
 }
 
-impl Frame<'_> {
+impl FrameRecording<'_> {
     fn record(&self, recorder: &mut Recorder, stage: Stage) {
         let Self { scene, bounds } = *self;
         let (stages, name) = (bounds.held.stages, stage.name());
@@ -77,7 +77,7 @@ impl Frame<'_> {
 
     fn shade(&self, recorder: &mut Recorder) {
         let Self { scene, bounds } = *self;
-        let (Held { stages, groom, .. }, name) = (bounds.held, Stage::Shade.name());
+        let (KeptResources { stages, groom, .. }, name) = (bounds.held, Stage::Shade.name());
         let one = |bound: &Bound, threads: usize| [bound.clone().over(threads)];
         let points = scene.point_count();
         recorder.clear(&groom.areas);
@@ -96,7 +96,7 @@ impl Frame<'_> {
 
     fn draw(&self, recorder: &mut Recorder) {
         let Self { scene, bounds } = *self;
-        let (Held { stages, groom, .. }, name) = (bounds.held, Stage::Draw.name());
+        let (KeptResources { stages, groom, .. }, name) = (bounds.held, Stage::Draw.name());
         recorder.clear(&groom.starts);
         recorder.stage(name, &[stages.list_segments.clone().over(scene.strand_count())]);
         recorder.stage(name, &stages.scan);
@@ -113,14 +113,17 @@ impl Frame<'_> {
 }
 
 /// Scattered light, where the look has it.
-fn scattering<'a>(scene: &Scene, held: &Held<'a>) -> Option<(&'a LightGrid, &'a light_grid::Bounds)> {
+fn scattering<'a>(
+    scene: &Scene,
+    held: &KeptResources<'a>,
+) -> Option<(&'a LightGrid, &'a light_grid::GridKernels)> {
     let scatters = scene.input.look.fibre.model.scatters_many_times();
     let grid = held.light_grid.filter(|_| scatters)?;
     Some((grid, grid.bounds()?))
 }
 
 /// Hair and skin summed into cells, and light carried through them.
-fn light_stages(scene: &Scene, rounds: u32, light: &light_grid::Bounds) -> Vec<(Bound, [u32; 3])> {
+fn light_stages(scene: &Scene, rounds: u32, light: &light_grid::GridKernels) -> Vec<(Bound, [u32; 3])> {
     let mut list = vec![light.sum_hair.clone().over(scene.segment_count())];
     if scene.triangle_count > 0 {
         list.push(light.sum_skin.clone().over(scene.triangle_count));
@@ -218,9 +221,9 @@ fn body_depths(recorder: &mut Recorder, scene: &Scene, stages: &Stages, maps: &M
 }
 
 /// Background, body and hair, in this order.
-pub(super) fn samples(recorder: &mut Recorder, scene: &Scene, held: &Held) {
+pub(super) fn samples(recorder: &mut Recorder, scene: &Scene, held: &KeptResources) {
     let name = Stage::Draw.name();
-    let Held { stages, samples: to, .. } = held;
+    let KeptResources { stages, samples: to, .. } = held;
     let has_body = scene.triangle_count > 0;
     if has_body {
         body_triangles(recorder, scene, held);
@@ -241,8 +244,8 @@ pub(super) fn samples(recorder: &mut Recorder, scene: &Scene, held: &Held) {
 }
 
 /// The body's triangle and depth in every sample.
-fn body_triangles(recorder: &mut Recorder, scene: &Scene, held: &Held) {
-    let Held { stages, samples: to, .. } = held;
+fn body_triangles(recorder: &mut Recorder, scene: &Scene, held: &KeptResources) {
+    let KeptResources { stages, samples: to, .. } = held;
     let body = stages.cut_body.as_ref().filter(|_| scene.paint & codes::CUT != 0).unwrap_or(&stages.body);
     let amount = Amount::Vertices { count: 3 * scene.triangle_count as u32, instance: 0 };
     let color = Some((to.triangles.view(), wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT)));

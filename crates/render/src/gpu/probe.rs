@@ -8,7 +8,7 @@ use super::GpuRenderer;
 use super::frame::{opacity_depth, opacity_layers};
 use super::half::from_half;
 use super::records::Curve;
-use super::renderer::Drawn;
+use super::renderer::LastFrame;
 use super::scene::Scene;
 use crate::shadow::{LightView, ShadowMap, Shadows, Window};
 use crate::strands::Strands;
@@ -164,7 +164,7 @@ impl GpuRenderer {
             opacity_layers(&mut recorder, &scene, stages);
             self.gpu.queue().submit([recorder.finish(|_| ())]);
         })?;
-        self.drawn = Drawn { shadows: scene.shadow_count(), ..Drawn::default() };
+        self.drawn = LastFrame { shadows: scene.shadow_count(), ..LastFrame::default() };
         let shadows = self.shadows(input.lights, &input.look.shadow, scene.middle);
         self.strands = None;
         shadows

@@ -8,7 +8,7 @@ use strandline_groom::{Binding, Guides, LaneSet};
 
 use super::buffers::{Groom, MAX_POINTS, Maps, Strands, Targets, floats};
 use super::channel_state::Channels;
-use super::frame::{Bounds, Held, record};
+use super::frame::{FrameKernels, KeptResources, record};
 use super::resolve::{Own, PICTURE, ToFormat};
 use super::scatter::light_grid::LightGrid;
 use super::scene::Scene;
@@ -47,7 +47,7 @@ pub struct GpuRenderer {
     timer: Option<Timer>,
     layer_coloring: LayerColoring,
     pub(super) channels: Channels,
-    pub(super) drawn: Drawn,
+    pub(super) drawn: LastFrame,
     /// Lights, shadow settings and middle of the hair \[m\] in the last picture.
     pub(super) lit: (Vec<Light>, Shadow, Vec3),
     /// The guides' colours.
@@ -56,7 +56,7 @@ pub struct GpuRenderer {
 
 /// Contents of the last frame.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Drawn {
+pub(super) struct LastFrame {
     pub strands_per_guide: usize,
     /// Of each eight guides those whose strands are drawn; the device has room for all.
     pub lanes: LaneSet,
@@ -64,7 +64,7 @@ pub(super) struct Drawn {
     pub shadows: usize,
 }
 
-impl Drawn {
+impl LastFrame {
     /// Place on the device of a point of the drawn strands.
     pub fn place(&self, index: usize) -> usize {
         let per_guide = self.strands_per_guide * self.curve_points;
@@ -106,7 +106,7 @@ impl GpuRenderer {
             timer: Timer::new(gpu)?,
             layer_coloring: LayerColoring::default(),
             channels: Channels::default(),
-            drawn: Drawn::default(),
+            drawn: LastFrame::default(),
             lit: (Vec::new(), Shadow::default(), Vec3::ZERO),
             own_colors: OwnColors::of(guides),
             guides: guides.clone(),
@@ -258,7 +258,7 @@ impl GpuRenderer {
         let layer_colors = self.layer_coloring.bind(gpu, given, groom, strands, maps)?;
         let resolve =
             &self.formats.iter().find(|known| known.format == format).expect("prepared above").bound;
-        let bounds = Bounds {
+        let bounds = FrameKernels {
             bound,
             tessellate,
             keep_outside,
@@ -287,7 +287,7 @@ impl GpuRenderer {
 
     /// Remembers what a frame drew.
     fn note(&mut self, scene: &Scene) {
-        self.drawn = Drawn {
+        self.drawn = LastFrame {
             strands_per_guide: scene.level.strand_count(),
             curve_points: scene.curve_points(),
             shadows: scene.shadow_count(),
@@ -299,8 +299,8 @@ impl GpuRenderer {
     }
 
     /// State kept from frame to frame, with the stages bound.
-    pub(super) fn held<'a>(&'a self, stages: &'a Stages) -> Held<'a> {
-        Held {
+    pub(super) fn held<'a>(&'a self, stages: &'a Stages) -> KeptResources<'a> {
+        KeptResources {
             groom: &self.groom,
             stages,
             light_grid: self.light_grid.as_ref(),
@@ -363,7 +363,7 @@ impl GpuRenderer {
     /// The last picture is lost with its buffers.
     fn forget(&mut self) {
         self.unbind();
-        self.drawn = Drawn::default();
+        self.drawn = LastFrame::default();
         self.lit.0.clear();
     }
 

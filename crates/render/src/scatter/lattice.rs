@@ -13,7 +13,7 @@ use strandline_base::par::prelude::*;
 
 use super::inclination::{Inclination, REGION, offsets};
 use super::ways::{DIRECTIONS, Rays, SETS, Set, TANGENTS, directions, tangent};
-use crate::fibre::chiang::{Around, Lobes, MOMENTS, Met, Pigments, Seen, Table, terms_along};
+use crate::fibre::chiang::{Around, EyeRow, Lobes, MOMENTS, Met, Pigments, Table, terms_along};
 use crate::light_field;
 
 /// Least by which albedos of two kinds of hair differ, for a third to lie between them.
@@ -50,7 +50,7 @@ type Shown = [Rays; DIRECTIONS];
 #[derive(Clone, Debug)]
 struct End {
     /// Its view at some inclination.
-    seen: Seen,
+    seen: EyeRow,
     around: Around,
     /// Radiance that it sends along a direction of the next set, of light along one of a set: shape
     /// `[set][tangent][arriving][shown]`. Found when a cell asks for it: hair lies along few of the tangents.
@@ -75,7 +75,7 @@ impl Lattice {
     }
 
     fn end(&self, pigments: Pigments) -> End {
-        let seen = Seen::new(MEAN_SINE, pigments);
+        let seen = EyeRow::new(MEAN_SINE, pigments);
         let albedo = self.table.seen_moments(&seen)[0];
         let shown = std::array::from_fn(|_| vec![OnceLock::new(); TANGENTS]);
         End { seen, around: self.table.around_of(&seen), shown, albedo }
@@ -341,7 +341,7 @@ fn product(weights: &Shown, light: &Rays) -> Rays {
 
 /// Radiance of each kind of path toward the eye, in whose direction `u` is a unit vector across the hair.
 #[inline]
-fn paths_of(table: &Table, terms: (&[Vec4], &Around), u: Vec3, seen: &Seen, light: &Arriving) -> [Vec3; 3] {
+fn paths_of(table: &Table, terms: (&[Vec4], &Around), u: Vec3, seen: &EyeRow, light: &Arriving) -> [Vec3; 3] {
     let turn = (u.dot(light.to_light) / light.flat).clamp(-1.0, 1.0);
     table.by_path_around(terms, seen, &light.met, turn)
 }
@@ -351,7 +351,7 @@ fn paths_of(table: &Table, terms: (&[Vec4], &Around), u: Vec3, seen: &Seen, ligh
 pub struct Shows {
     /// A unit vector across the hair toward the eye.
     u: Vec3,
-    seen: Seen,
+    seen: EyeRow,
     /// Weight in the sum over all directions.
     weight: f32,
 }

@@ -19,7 +19,7 @@ use super::obstacles::Obstacles;
 use super::parts::{Parts, beyond};
 use super::planes::{MOST_DEPTH, Plane, Rider, carriers};
 use super::touch::Touch;
-use super::way::{Seen, met};
+use super::way::{LookUp, met};
 use strandline_base::vec3x8::{Rigid, Vec3x8, load, splat};
 
 /// Precision of a look-up of the solids.
@@ -328,7 +328,7 @@ impl Group<'_> {
             if seen.is_before(here.get(lane)) {
                 blocked[lane] = f32::from_bits(u32::MAX);
             }
-            let Seen { place, distance, normal, friction } = seen;
+            let LookUp { place, distance, normal, friction } = seen;
             plane.anchor.set(lane, place);
             plane.normal.set(lane, normal);
             plane.distance.0[lane] = distance;
@@ -352,8 +352,8 @@ impl Group<'_> {
 
     /// The nearest solid, and a triangle of a skin for the next look. Points deeper in a skin, or farther from it, than is
     /// exact have a bound of their distance.
-    pub(super) fn nearest(&self, point: Vec3, triangle: &Cell<u32>, exact: &Exact) -> Seen {
-        let mut nearest = Seen { place: point, distance: f32::INFINITY, normal: Vec3::Y, friction: 0.0 };
+    pub(super) fn nearest(&self, point: Vec3, triangle: &Cell<u32>, exact: &Exact) -> LookUp {
+        let mut nearest = LookUp { place: point, distance: f32::INFINITY, normal: Vec3::Y, friction: 0.0 };
         for (collider, skin) in &self.colliders {
             let (distance, normal) = match skin {
                 Some(skin) => {
@@ -364,7 +364,7 @@ impl Group<'_> {
                 None => collider.shape.distance_and_gradient(point),
             };
             if distance < nearest.distance {
-                nearest = Seen { distance, normal, friction: collider.friction, ..nearest };
+                nearest = LookUp { distance, normal, friction: collider.friction, ..nearest };
             }
         }
         nearest

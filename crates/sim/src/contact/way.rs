@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 
-/// A look at the solids, all in the space of what carries them.
+/// A look-up of the signed distance of solids, in the space of their carrier.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub struct LookUp {
     /// Position of the look-up \[m\].
     pub place: Vec3,
     /// Signed distance \[m\] there, never more than the true one outside.
@@ -29,7 +29,7 @@ const ARRIVED: f32 = 1e-4;
 ///
 /// A stride is as long as the signed distance, within which the path is free [Hart1996]. At a surface the point slides on
 /// along it: the motion into the solid is lost, as in an impact without a rebound.
-pub fn met(start: Vec3, end: Vec3, nearest: impl Fn(Vec3) -> Seen) -> Seen {
+pub fn met(start: Vec3, end: Vec3, nearest: impl Fn(Vec3) -> LookUp) -> LookUp {
     let at_end = nearest(end);
     let way = start.distance(end);
     if way <= SHORT || at_end.distance >= way {
@@ -52,7 +52,7 @@ pub fn met(start: Vec3, end: Vec3, nearest: impl Fn(Vec3) -> Seen) -> Seen {
     seen
 }
 
-impl Seen {
+impl LookUp {
     /// True if the point must not reach `end` \[m\].
     pub fn is_before(&self, end: Vec3) -> bool {
         self.place.distance(end) > 2.0 * ARRIVED
@@ -63,8 +63,8 @@ impl Seen {
 mod tests {
     use super::*;
 
-    fn ball(place: Vec3) -> Seen {
-        Seen { place, distance: place.length() - 0.05, normal: place.normalize_or(Vec3::Y), friction: 0.3 }
+    fn ball(place: Vec3) -> LookUp {
+        LookUp { place, distance: place.length() - 0.05, normal: place.normalize_or(Vec3::Y), friction: 0.3 }
     }
 
     #[test]

@@ -49,7 +49,7 @@ impl CpuRunner {
         self.model.set_settings(settings)
     }
 
-    /// Advances a state by one step of `settings.time_step`. It may be another state than the one before.
+    /// Advances a state by one step of `settings.time_step`. The state may differ from that of the call before.
     pub fn step(&mut self, state: &mut State, drive: &Drive) -> StepReport {
         let drive = drive.or_still_at(&state.body, self.model.strand_count);
         state.grab.hand = drive.hand.unwrap_or(state.grab.hand);

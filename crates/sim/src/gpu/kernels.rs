@@ -7,8 +7,8 @@ use strandline_gpu::{Declaration, Dispatches, Gpu, GpuError, Scan};
 use super::buffers::Buffers;
 use super::stage::{StageKernels, Target};
 use super::{
-    advance, constrain, gather, integrate, lengths_alone, mark, pose_roots, shelter, slide, solve_pressure,
-    solve_rods, splat,
+    advance, between, constrain, gather, integrate, lengths_alone, mark, pose_roots, shelter, slide,
+    solve_pressure, solve_rods, splat,
 };
 use crate::Model;
 use crate::step::Stage;
@@ -51,6 +51,7 @@ macro_rules! kernels {
         pub fn declarations() -> Vec<Declaration> {
             let mut all: Vec<Declaration> = lengths_alone::declarations().into();
             all.push(slide::Slide::declaration());
+            all.push(between::declaration());
             $(all.extend($module::Stage::declarations());)*
             all
         }

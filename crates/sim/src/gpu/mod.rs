@@ -37,7 +37,7 @@ mod stage;
 mod transfer;
 mod volume;
 
-pub use between::{ComingPoints, read_between};
+pub use between::{ComingPoints, PointCarrier, read_between};
 pub use kernels::declarations;
 pub use lengths_alone::{LengthsForm, LengthsInput, lengths_alone};
 pub use linked::modules;

@@ -11,7 +11,7 @@ use crate::Model;
 
 kernel! {
     /// Boxes around the points of strands; one thread is one strand.
-    pub(super) struct Bounds in "follow" (super::linked::FOLLOW), entry "bounds" {
+    pub(super) struct BoxStrands in "follow" (super::linked::FOLLOW), entry "bounds" {
         0 step: Read Step,
         2 predicted: Read f32,
         4 mass: Read f32,
@@ -89,7 +89,7 @@ kernel! {
 const SHARERS: usize = 8;
 
 pub(super) struct Stage {
-    bounds: Kernel<Bounds<'static>>,
+    bounds: Kernel<BoxStrands<'static>>,
     follow: Kernel<Follow<'static>>,
     find_cells: Kernel<FindCells<'static>>,
     list_points: Kernel<ListPoints<'static>>,
@@ -101,7 +101,7 @@ pub(super) struct Stage {
 impl StageKernels for Stage {
     fn declarations() -> Vec<Declaration> {
         vec![
-            Bounds::declaration(),
+            BoxStrands::declaration(),
             Follow::declaration(),
             FindCells::declaration(),
             ListPoints::declaration(),
@@ -134,7 +134,7 @@ impl StageKernels for Stage {
         let (cell_ranks, faces) = (&volume.cell_ranks, &volume.faces);
         let (sorted_points, counted) = (&volume.sorted_points, &volume.counted);
         let points = buffers.point_count();
-        let bounds = self.bounds.bind(gpu, &Bounds { step, predicted, mass, boxes })?;
+        let bounds = self.bounds.bind(gpu, &BoxStrands { step, predicted, mass, boxes })?;
         let follow = self.follow.bind(gpu, &Follow { grid, boxes, ladder })?;
         let find_cells =
             self.find_cells.bind(gpu, &FindCells { step, grid, predicted, mass, counts, cell_ranks })?;

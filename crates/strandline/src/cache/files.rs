@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use strandline_base::FolderLock;
 
-use super::{Frame, shape::Shape};
+use super::{CacheFrame, shape::Shape};
 use crate::{
     Error,
     groom::{Groom, Influences, Widths},
@@ -73,7 +73,7 @@ impl Files {
     }
 
     /// Writes the file of a frame.
-    pub fn add(&mut self, frame: &Frame) -> Result<(), Error> {
+    pub fn add(&mut self, frame: &CacheFrame) -> Result<(), Error> {
         self.groom.points.clear();
         self.groom.points.extend_from_slice(frame.points);
         let (before, digits, after) = &self.pattern;

@@ -28,7 +28,7 @@ use glam::Vec3;
 use crate::body::BodyFrame;
 
 /// A frame that is written.
-pub(crate) struct Frame<'a> {
+pub(crate) struct CacheFrame<'a> {
     /// Its number in the film, from 0.
     pub number: u32,
     /// Time since the film's beginning \[s\].

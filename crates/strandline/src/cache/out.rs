@@ -9,7 +9,7 @@ use glam::Vec3;
 use strandline_base::{SettingError, Stopwatch};
 
 use super::{
-    Cache, Frame, Target, What,
+    Cache, CacheFrame, Target, What,
     files::{Files, size},
     shape::{Leaving, Shape},
     store::Store,
@@ -206,14 +206,14 @@ impl Out {
         if origin != Vec3::ZERO {
             points.iter_mut().for_each(|point| *point += origin);
         }
-        let frame = Frame { number, time, points: &points, body: &body.moved(origin) };
+        let frame = CacheFrame { number, time, points: &points, body: &body.moved(origin) };
         let added = self.write(&frame, state);
         self.points = points;
         self.time += watch.elapsed();
         added
     }
 
-    fn write(&mut self, frame: &Frame, state: Option<&Snapshot>) -> Result<(), Error> {
+    fn write(&mut self, frame: &CacheFrame, state: Option<&Snapshot>) -> Result<(), Error> {
         match &mut self.writer {
             Writer::Store(store) => store.add(frame, state)?,
             Writer::Usd(usd) => usd.add(frame)?,
@@ -248,7 +248,7 @@ impl Out {
         for index in 0..count {
             let body = &cache.read(index, &mut points)?;
             let (number, time) = (self.first + index as u32 * self.every, cache.times()[index]);
-            self.write(&Frame { number, time, points: &points, body }, None)?;
+            self.write(&CacheFrame { number, time, points: &points, body }, None)?;
         }
         (self.offered, self.last_time) = (state.frame + 1, state.time);
         if let Writer::Store(store) = &mut self.writer {

@@ -80,11 +80,11 @@ pub(crate) struct Shape {
 /// Source of points.
 enum Source {
     Guides { points_per_strand: usize },
-    Strands(Box<Drawn>),
+    Strands(Box<GrownStrands>),
 }
 
 /// Strands as pictures grow them.
-struct Drawn {
+struct GrownStrands {
     growth: Growth,
     look: Look,
     level: DetailLevel,
@@ -147,7 +147,7 @@ impl Shape {
             Some(bound) => Growth::bound(bound.binding(), bound.solids()),
             None => Growth::new(guides),
         };
-        let mut drawn = Drawn { growth, look: scene.look.clone(), level };
+        let mut drawn = GrownStrands { growth, look: scene.look.clone(), level };
         let grown = drawn.growth.at(guides.positions(), &BodyFrame::REST, &drawn.look, &level);
         // The strands of a clump share their colours.
         let colors = grown.colors.chunks_exact(points).flat_map(|colors| {
@@ -185,7 +185,7 @@ impl Shape {
                 points.extend(in_strand_order(positions, strand_count, *each));
             }
             Source::Strands(drawn) => {
-                let Drawn { growth, look, level } = &mut **drawn;
+                let GrownStrands { growth, look, level } = &mut **drawn;
                 let grown = growth.at(positions, body, look, level);
                 points.extend_from_slice(&grown.positions);
             }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use strandline_base::npz::{Array, Growing, GrowingNpz, Kind};
 
 use super::{
-    Frame,
+    CacheFrame,
     meta::{Meta, Report},
     relative,
     shape::{Attributes, Shape},
@@ -90,7 +90,7 @@ impl Store {
     }
 
     /// Adds a frame.
-    pub fn add(&mut self, frame: &Frame, state: Option<&Snapshot>) -> Result<(), Error> {
+    pub fn add(&mut self, frame: &CacheFrame, state: Option<&Snapshot>) -> Result<(), Error> {
         self.meta.report.frame();
         self.bytes.resize(12 * frame.points.len(), 0);
         for (bytes, point) in self.bytes.chunks_exact_mut(12).zip(frame.points) {

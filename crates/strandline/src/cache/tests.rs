@@ -119,7 +119,7 @@ fn attributes_that_there_are_leave_with_the_strands() {
     everything(&mut shape);
     let mut points = Vec::new();
     shape.place(guides.positions(), &BodyFrame::REST, &mut points);
-    let frame = Frame { number: 0, time: 0.0, points: &points, body: &REST };
+    let frame = CacheFrame { number: 0, time: 0.0, points: &points, body: &REST };
     let path = folder.path().join("a.npz");
     let mut store = store::Store::new(&path, &scene, &shape, &REST, [0, 1]).unwrap();
     store.add(&frame, None).unwrap();
@@ -183,9 +183,9 @@ fn usd_has_a_transform_for_each_piece_of_the_body() {
     let two = BodyFrame::REST.with_pieces([moved]);
     let path = folder.path().join("pieces.usda");
     let mut usd = usd::Usd::new(&path, &scene, &shape, Target::Unreal).unwrap();
-    usd.add(&Frame { number: 0, time: 0.0, points: &points, body: &REST }).unwrap();
+    usd.add(&CacheFrame { number: 0, time: 0.0, points: &points, body: &REST }).unwrap();
     // Three time codes of a thirtieth of a second.
-    usd.add(&Frame { number: 3, time: 0.1, points: &points, body: &two }).unwrap();
+    usd.add(&CacheFrame { number: 3, time: 0.1, points: &points, body: &two }).unwrap();
     usd.finish(true).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
     let (_, piece) = text.split_once("def Xform \"piece_1\"").unwrap();

@@ -12,7 +12,7 @@ use glam::{Quat, Vec3};
 use strandline_base::{FolderLock, GrowingFile};
 
 use super::{
-    Frame, Target, What,
+    CacheFrame, Target, What,
     shape::{Attributes, Shape},
     usd_text::{list, put, put_points, put_tuple, quoted},
 };
@@ -245,7 +245,7 @@ impl Usd {
     }
 
     /// Adds a frame.
-    pub fn add(&mut self, frame: &Frame) -> Result<(), Error> {
+    pub fn add(&mut self, frame: &CacheFrame) -> Result<(), Error> {
         let (code, space) = (self.code(frame.time), self.space);
         let mut texts = std::mem::take(&mut self.texts);
         let [low, high] = put_points(&mut texts, frame.points, |point| space.point(point));

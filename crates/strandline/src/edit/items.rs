@@ -3,12 +3,12 @@
 use strandline_base::{Group, Kind};
 use toml::{Table, Value};
 
-use super::search::{Found, Values, changed, settings_in, table_of};
+use super::search::{SettingMatch, Values, changed, settings_in, table_of};
 use crate::{Error, Scene};
 
 /// The settings of each item of a list, with keys such as `ties[1].radius`: those that an item of its shape has, without
 /// lists of its own.
-pub fn items_of(values: &Values, list: &str) -> Vec<Vec<Found>> {
+pub fn items_of(values: &Values, list: &str) -> Vec<Vec<SettingMatch>> {
     let Some(Kind::List(items)) = Scene::TABLE.row(list).map(|row| row.kind) else { return Vec::new() };
     let count = values.get(list).and_then(Value::as_array).map_or(0, Vec::len);
     let item = |index: usize| {

@@ -14,6 +14,6 @@ pub use history::{History, Step};
 pub use items::{items_of, with_item, without_item};
 pub use look_file::{is_look, load_look, save_look};
 pub use mends::{Mend, mends};
-pub use search::{Found, Values, find, settings_of, with_value};
+pub use search::{SettingMatch, Values, find, settings_of, with_value};
 pub use toml::{Table, Value};
 pub use units::quantity;

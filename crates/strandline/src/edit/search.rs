@@ -7,7 +7,7 @@ use crate::{Error, Scene};
 
 /// A setting that was found.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct SettingMatch {
     /// Its name in its sections: `simulation.drag.across`.
     pub key: String,
     /// Its description.
@@ -16,7 +16,7 @@ pub struct Found {
 
 /// Settings whose names or sentences have all of these words, those with the words in their names first. Items of lists
 /// are not among them.
-pub fn find(words: &str) -> Vec<Found> {
+pub fn find(words: &str) -> Vec<SettingMatch> {
     let words: Vec<String> = words.split_whitespace().map(str::to_lowercase).collect();
     if words.is_empty() {
         return Vec::new();
@@ -24,8 +24,8 @@ pub fn find(words: &str) -> Vec<Found> {
     let mut all = Vec::new();
     collect(&Scene::TABLE, "", &mut all);
     let has = |text: &str| words.iter().all(|word| text.contains(word.as_str()));
-    let named = |found: &Found| has(&found.key.replace('_', " ")) || has(&found.key);
-    let (mut first, rest): (Vec<Found>, Vec<Found>) = all.into_iter().partition(named);
+    let named = |found: &SettingMatch| has(&found.key.replace('_', " ")) || has(&found.key);
+    let (mut first, rest): (Vec<SettingMatch>, Vec<SettingMatch>) = all.into_iter().partition(named);
     first.extend(rest.into_iter().filter(|found| {
         let text = format!("{} {} {}", found.key.replace('_', " "), found.row.sentence(), found.row.more);
         has(&text.to_lowercase())
@@ -34,7 +34,7 @@ pub fn find(words: &str) -> Vec<Found> {
 }
 
 /// The settings of a section and of the sections in it, in the order of a file. Items of lists are not among them.
-pub fn settings_of(section: &str) -> Vec<Found> {
+pub fn settings_of(section: &str) -> Vec<SettingMatch> {
     match Scene::TABLE.row(section).map(|row| row.kind) {
         Some(Kind::Group(table)) => settings_in(table, section),
         _ => Vec::new(),
@@ -42,19 +42,19 @@ pub fn settings_of(section: &str) -> Vec<Found> {
 }
 
 /// The settings of a table that stands in a section.
-pub(super) fn settings_in(table: &Table, section: &str) -> Vec<Found> {
+pub(super) fn settings_in(table: &Table, section: &str) -> Vec<SettingMatch> {
     let mut all = Vec::new();
     collect(table, section, &mut all);
     all
 }
 
-fn collect(table: &Table, section: &str, all: &mut Vec<Found>) {
+fn collect(table: &Table, section: &str, all: &mut Vec<SettingMatch>) {
     for row in table.rows {
         let key = if section.is_empty() { row.name.to_owned() } else { format!("{section}.{}", row.name) };
         match row.kind {
             Kind::Group(table) => collect(table, &key, all),
             Kind::List(_) => {}
-            _ => all.push(Found { key, row }),
+            _ => all.push(SettingMatch { key, row }),
         }
     }
 }

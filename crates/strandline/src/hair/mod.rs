@@ -8,17 +8,15 @@ use glam::Vec3;
 
 use crate::{
     Devices, Error, HeadMotion, Prepared, Scene, Sources,
-    body::{Aabb, BodyFrame, Collider, Mesh},
+    body::{Aabb, BodyFrame},
     gpu::Gpu,
-    groom::{Groom, Guides},
+    groom::Guides,
     prepare::center,
     render::{BodyLook, Camera, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings},
-    scene::GroomSection,
-    scene::devices::{Pair, device_name},
+    scene::devices::device_name,
     session::{Change, Inline, Session, film_timing::FilmTiming},
     sim::{Settings, State, StepReport},
     snapshot::files::write_pose,
-    strands::tags::Tags,
 };
 
 /// A head of hair that moves and can be drawn: simulator and renderer in one.
@@ -37,18 +35,6 @@ pub struct Hair {
 }
 
 impl Hair {
-    /// Hair of a groom in head space \[m\], without a body. [`Hair::from_sources`] also guesses units and axes, chooses
-    /// a look and brings a groom onto a body.
-    ///
-    /// # Errors
-    /// A setting outside its range, or a groom without strands.
-    pub fn new(devices: impl Into<Devices>, groom: &Groom, settings: &Settings) -> Result<Self, Error> {
-        let guides = Guides::resample(groom, GroomSection::default().points_per_strand as usize)?;
-        let mut hair = Self::with_body(devices, guides, None, Vec::new(), settings)?;
-        hair.session.set_tags(Tags::new(groom, None));
-        Ok(hair)
-    }
-
     /// Everything of a scene but its film, from files, on the devices that it names.
     ///
     /// # Errors
@@ -57,7 +43,8 @@ impl Hair {
         Self::from_sources(scene, &Sources::default())
     }
 
-    /// As [`Hair::open`], with grooms, meshes and maps from memory.
+    /// As [`Hair::open`], with grooms, meshes and maps from memory. Strands alone, without a body, are a scene whose
+    /// `groom.file` names a groom of the sources.
     ///
     /// # Errors
     /// As [`Hair::open`]; a source that the scene does not name, or that is unusable.
@@ -74,33 +61,12 @@ impl Hair {
         Ok(Self::of(Session::open(prepared, devices.into())?))
     }
 
-    /// Guides on a body: its drawn mesh, and the solids that hair hits.
+    /// A loaded scene on a device that the host owns ([`Gpu`]`::from_parts`), which draws and simulates it.
     ///
     /// # Errors
-    /// A setting outside its range, or a GPU that is asked for by name and not there.
-    pub fn with_body(
-        devices: impl Into<Devices>,
-        guides: Guides,
-        mesh: Option<&Mesh>,
-        colliders: Vec<Collider>,
-        settings: &Settings,
-    ) -> Result<Self, Error> {
-        let pair = devices.into().open()?;
-        Ok(Self::of(Session::new(pair, guides, None, mesh, colliders, settings)?))
-    }
-
-    /// As [`Hair::with_body`], simulated and drawn on a device that the host owns.
-    ///
-    /// # Errors
-    /// A setting outside its range, or whatever the device refuses.
-    pub fn with_device(
-        gpu: &Gpu,
-        guides: Guides,
-        mesh: Option<&Mesh>,
-        colliders: Vec<Collider>,
-        settings: &Settings,
-    ) -> Result<Self, Error> {
-        Ok(Self::of(Session::new(Pair::of(gpu), guides, None, mesh, colliders, settings)?))
+    /// A setting of the scene outside its range; whatever the device refuses.
+    pub fn with_device(prepared: Prepared, gpu: &Gpu) -> Result<Self, Error> {
+        Ok(Self::of(Session::open_with(prepared, gpu)?))
     }
 
     fn of(session: Session<Inline>) -> Self {

@@ -1,11 +1,11 @@
 //! Overlays of hair that plays.
 
 use glam::Vec3;
-use strandline_base::par::prelude::*;
+use strandline_base::{in_strand_order, par::prelude::*};
 
 use super::loaded::Loaded;
 use super::overlaid::hidden::Silhouette;
-use super::overlaid::{NEAR, Overlaid, Overlay, in_order, range, stiffnesses, stretches};
+use super::overlaid::{NEAR, Overlaid, Overlay, range, stiffnesses, stretches};
 use crate::Error;
 
 impl Loaded {
@@ -51,13 +51,14 @@ impl Loaded {
         let before = number.checked_sub(1).and_then(read).transpose()?;
         let now = read(number).transpose()?;
         let guides = self.session.view().guides();
-        let shape = [guides.strand_count(), guides.points_per_strand()];
+        let (strands, each) = (guides.strand_count(), guides.points_per_strand());
         let (Some((now, origin)), Some((before, origin_before))) = (now, before) else {
-            return Ok(vec![0.0; shape[0] * shape[1]]);
+            return Ok(vec![0.0; strands * each]);
         };
         let (apart, rate) = (origin - origin_before, self.rate() as f32);
         let speed = |(now, before): (Vec3, Vec3)| (now - before + apart).length() * rate;
-        Ok(in_order(&now, shape).zip(in_order(&before, shape)).map(speed).collect())
+        let pairs = in_strand_order(&now, strands, each).zip(in_strand_order(&before, strands, each));
+        Ok(pairs.map(speed).collect())
     }
 
     /// Distances \[mm\] to the nearest solid; none without solids.

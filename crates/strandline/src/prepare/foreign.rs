@@ -6,7 +6,7 @@ use strandline_base::math;
 use super::evidence::Hair;
 use super::head::{UPS, turns, turns_of};
 use super::placing::{Placing, upright};
-use super::relation::{Found, MOST, PIECE, Search, fits};
+use super::relation::{FoundPlacing, MOST, PIECE, Search, fits};
 use super::sample::HEIGHTS;
 use super::skull::Skull;
 use super::units::unit_of_width;
@@ -30,7 +30,7 @@ const SAME_SIZE: f32 = 0.03;
 
 /// The place of hair of another head, before it is fitted, given the unit of its file where its width shows none: the axes with which it lies most
 /// like hair once it is fitted. None where a scene places the groom, or it is not the hair of a head.
-pub(super) fn found(search: &Search, unit: f32) -> Option<Found> {
+pub(super) fn found(search: &Search, unit: f32) -> Option<FoundPlacing> {
     let (given, skull) = (&search.scene.groom, search.head.skull.as_ref()?);
     let is_open = given.scale == Scale::Auto && given.translation == Vec3::ZERO;
     if !is_open || !search.hair.is_surely_full() {
@@ -59,7 +59,7 @@ pub(super) fn found(search: &Search, unit: f32) -> Option<Found> {
     found.sort_by(|one, two| two.0.total_cmp(&one.0));
     let (evidence, placing, fit) = *found.first()?;
     let margin = found.get(1).map_or(MOST, |other| evidence - other.0);
-    Some(Found { placing, fit, margin, next: found.get(1).map(|other| other.1), is_foreign: true })
+    Some(FoundPlacing { placing, fit, margin, next: found.get(1).map(|other| other.1), is_foreign: true })
 }
 
 /// Strands of another head fitted to that of the body, from a place in the axes and the unit of their file, and the size

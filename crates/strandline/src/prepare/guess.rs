@@ -9,7 +9,7 @@ use super::{
     foreign,
     noted::noted,
     placing::{Defined, Placing, Placings, diagonal, upright},
-    relation::{Found, Head, Search},
+    relation::{FoundPlacing, Head, Search},
     sample::{NEAR, NEARER, Sample},
     shown::{Body, SHAPELESS, Shown},
     units::{SCALPS, given_unit, unit_of_width},
@@ -160,7 +160,7 @@ fn found(search: &Search, grooms: &[&Groom], of_body: Placings) -> Placings {
         let is_away = search.hair.is_surely_full() || search.fits(&[groom])[0] > FAR_OFF;
         return Placings { groom, confidence: AWAY, is_away, ..of_body };
     };
-    let Found { placing, fit, margin, next, is_foreign } = found;
+    let FoundPlacing { placing, fit, margin, next, is_foreign } = found;
     let astray = if is_foreign { ASTRAY_FOREIGN } else { ASTRAY };
     let fitting = (1.0 - fit / astray).clamp(AWAY, 1.0) * (1.0 - 0.5 * math::exp(-margin));
     let is_turned_patch = !search.hair.is_surely_full() && placing.is_turned_from(&search.same());

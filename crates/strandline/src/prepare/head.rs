@@ -69,7 +69,7 @@ pub(super) fn turns() -> impl Iterator<Item = Quat> {
 /// The pose that a body shows, given the axes that may point up: those of its file where it shows none.
 pub(super) fn pose(mesh: &Mesh, ups: &[Up]) -> Pose {
     let places = surface(mesh, PLACES);
-    let seen: Vec<Seen> = ups.iter().map(|up| Seen::new(mesh, &places, *up)).collect();
+    let seen: Vec<UpCandidate> = ups.iter().map(|up| UpCandidate::new(mesh, &places, *up)).collect();
     let Some((first, others)) = seen.split_first() else { unreachable!("an axis that may point up") };
     let best = others.iter().fold(first, |best, one| {
         let limit = if std::ptr::eq(best, first) { SURER * best.strange } else { best.strange };
@@ -78,7 +78,7 @@ pub(super) fn pose(mesh: &Mesh, ups: &[Up]) -> Pose {
     if best.strange < PERSON {
         return best.pose();
     }
-    let standing = |seen: &&Seen| stands(&places, seen.up.rotation());
+    let standing = |seen: &&UpCandidate| stands(&places, seen.up.rotation());
     let found = if standing(&first) { Some(first) } else { seen.iter().find(standing) };
     let based = || seen.iter().find(|seen| has_base(mesh, seen.up.rotation()));
     let based = if found.is_none() { based() } else { None };
@@ -87,8 +87,8 @@ pub(super) fn pose(mesh: &Mesh, ups: &[Up]) -> Pose {
     Pose { turn: up.rotation(), is_person: false, shows_front: false, up, is_sure, has_base }
 }
 
-/// A body with an axis up.
-struct Seen {
+/// An axis of a body that may point up.
+struct UpCandidate {
     up: Up,
     /// Difference from the head of a person: the least of all fronts.
     strange: f32,
@@ -96,7 +96,7 @@ struct Seen {
     fronts: [(f32, [f32; 2]); 4],
 }
 
-impl Seen {
+impl UpCandidate {
     fn new(mesh: &Mesh, places: &[Vec3], up: Up) -> Self {
         let mut strange = f32::INFINITY;
         let of_head = head_places(mesh, places, up.rotation());

@@ -91,7 +91,7 @@ impl Rim {
     fn new(middle: Vec3, places: impl Iterator<Item = Vec3>) -> Self {
         let mut polars = vec![None; DIRECTIONS];
         for place in places {
-            let Seen { polar, azimuth, .. } = Seen::of(place - middle);
+            let Bearing { polar, azimuth, .. } = Bearing::of(place - middle);
             let rim: &mut Option<f32> =
                 &mut polars[(azimuth / TAU * DIRECTIONS as f32) as usize % DIRECTIONS];
             *rim = Some(rim.map_or(polar, |held| held.max(polar)));
@@ -120,14 +120,14 @@ impl Rim {
     }
 }
 
-/// A place as it is seen from within the skull.
-struct Seen {
+/// Direction and distance of a place from the middle of the skull.
+struct Bearing {
     polar: f32,
     azimuth: f32,
     distance: f32,
 }
 
-impl Seen {
+impl Bearing {
     fn of(beside: Vec3) -> Self {
         let distance = beside.length();
         let polar = math::acos((beside.y / distance.max(f32::MIN_POSITIVE)).clamp(-1.0, 1.0));
@@ -157,14 +157,14 @@ pub(super) fn onto(
     let from = Rim::new(middle, built_in.iter().map(|root| place(root.position)));
     let to = Rim::new(middle, places(marked));
     for point in &mut groom.points {
-        let seen = Seen::of(*point - middle);
+        let seen = Bearing::of(*point - middle);
         let (from, to) = (from.at(seen.azimuth), to.at(seen.azimuth));
         let polar = if seen.polar < from {
             seen.polar * to / from
         } else {
             to + (seen.polar - from) * (PI - to) / (PI - from).max(f32::MIN_POSITIVE)
         };
-        *point = middle + Seen { polar, ..seen }.place();
+        *point = middle + Bearing { polar, ..seen }.place();
     }
     let roots: Vec<Vec3> = groom.roots().collect();
     let (sought, found) = seen_on(marked, middle, &roots);

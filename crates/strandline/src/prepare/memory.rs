@@ -3,7 +3,7 @@
 use glam::Vec3;
 use strandline_base::memory;
 
-use crate::render::{OwnColors, memory::Drawn};
+use crate::render::{OwnColors, memory::DrawnGroom};
 use crate::{Error, Scene};
 
 /// Refuses a scene that would take more memory than a run may, by its numbers of simulated and of drawn strands and the
@@ -20,7 +20,7 @@ pub(crate) fn check(
     let lights = if scene.lights.is_empty() { &default } else { &scene.lights };
     let (look, picture) = (&scene.look, &scene.picture);
     let own_color = colors.and_then(OwnColors::of_points).map(|own| own.mean);
-    let drawn = Drawn { guide_count: drawn, points_per_strand, look, lights, picture, own_color };
+    let drawn = DrawnGroom { guide_count: drawn, points_per_strand, look, lights, picture, own_color };
     needs.extend(drawn.memory(&scene.level_of_detail));
     Ok(memory::check(&needs)?)
 }

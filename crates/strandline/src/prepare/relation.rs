@@ -71,9 +71,9 @@ impl Head {
     }
 }
 
-/// A place of a groom.
+/// Placing of a groom that a search found.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Found {
+pub(super) struct FoundPlacing {
     pub placing: Placing,
     /// Distance of roots from the skin over their size.
     pub fit: f32,
@@ -98,7 +98,7 @@ pub(super) struct Search<'a> {
 impl Search<'_> {
     /// The axes and the unit of the groom: those of the body's file where roots then lie on the skin and nothing
     /// speaks against it, others where they alone bring them there. None where nothing does.
-    pub fn found(&self) -> Option<Found> {
+    pub fn found(&self) -> Option<FoundPlacing> {
         let same = self.same();
         let fit = self.fits(&[same])[0];
         if fit <= ON_SKIN {
@@ -118,7 +118,7 @@ impl Search<'_> {
         if fit <= FLOATING {
             return Some(self.against(same, fit));
         }
-        let is_unit = |found: &Found| {
+        let is_unit = |found: &FoundPlacing| {
             let ratio = found.placing.scale / same.scale;
             !OTHER_HEADS.contains(&ratio) || UNITS.contains(&found.placing.scale)
         };
@@ -142,8 +142,8 @@ impl Search<'_> {
     }
 
     /// The place that the body's file gives, or other axes that the roots fit as well and that the hair surely shows.
-    fn against(&self, same: Placing, fit: f32) -> Found {
-        let sure = Found { placing: same, fit, margin: MOST, next: None, is_foreign: false };
+    fn against(&self, same: Placing, fit: f32) -> FoundPlacing {
+        let sure = FoundPlacing { placing: same, fit, margin: MOST, next: None, is_foreign: false };
         let placed = self.placed(&same);
         let Some(skull) = &self.head.skull else { return sure };
         let is_fixed = self.is_defined || self.scene.groom.up != Up::Auto || !self.is_free();
@@ -159,8 +159,10 @@ impl Search<'_> {
         let own = self.evidence(&same, fit);
         match self.best(fitting.collect()) {
             Some(best) if self.evidence(&best.placing, best.fit) > own + CLEAR => best,
-            Some(best) if best.placing == same => Found { margin: best.margin, next: best.next, ..sure },
-            Some(best) => Found {
+            Some(best) if best.placing == same => {
+                FoundPlacing { margin: best.margin, next: best.next, ..sure }
+            }
+            Some(best) => FoundPlacing {
                 margin: own + CLEAR - self.evidence(&best.placing, best.fit),
                 next: Some(best.placing),
                 ..sure
@@ -171,7 +173,7 @@ impl Search<'_> {
 
     /// The place of a patch in the axes of its body's file. Where those are no program's and leave it behind the face, the
     /// usual ones that bring it onto the face are the next place, as likely.
-    fn of_patch(&self, sure: Found, skull: &Skull) -> Found {
+    fn of_patch(&self, sure: FoundPlacing, skull: &Skull) -> FoundPlacing {
         let [y, z] = [Up::Y, Up::Z].map(upright);
         let is_near = |turn: Quat| sure.placing.turn.angle_between(turn) < 0.01;
         let is_ahead = |placing: &Placing| self.placed(placing).is_ahead(skull);
@@ -181,7 +183,7 @@ impl Search<'_> {
         let tried = [y, z].map(|turn| Placing { turn, ..sure.placing });
         let fits = self.fits(&tried);
         let next = tried.into_iter().zip(fits).find(|(placing, fit)| *fit < ON_SKIN && is_ahead(placing));
-        next.map_or(sure, |(next, _)| Found { margin: 0.0, next: Some(next), ..sure })
+        next.map_or(sure, |(next, _)| FoundPlacing { margin: 0.0, next: Some(next), ..sure })
     }
 
     /// True where hair may show the front of groom and body: it is a full head of hair, and a scene turns neither.
@@ -244,19 +246,19 @@ impl Search<'_> {
         lies.unwrap_or(0.0) - (fit / PIECE).min(MOST) - against - unit
     }
 
-    /// The place for which most speaks.
-    fn best(&self, tried: Vec<(Placing, f32)>) -> Option<Found> {
+    /// The placing with the most evidence.
+    fn best(&self, tried: Vec<(Placing, f32)>) -> Option<FoundPlacing> {
         let mut found: Vec<(f32, Placing, f32)> =
             tried.into_iter().map(|(placing, fit)| (self.evidence(&placing, fit), placing, fit)).collect();
         found.sort_by(|one, two| two.0.total_cmp(&one.0));
         let (evidence, placing, fit) = *found.first()?;
         let other = found.iter().find(|one| one.1.differs(&placing));
         let margin = other.map_or(MOST, |other| evidence - other.0);
-        Some(Found { placing, fit, margin, next: other.map(|other| other.1), is_foreign: false })
+        Some(FoundPlacing { placing, fit, margin, next: other.map(|other| other.1), is_foreign: false })
     }
 
     /// The place of a patch, with the next one of all axes that bring it as near to the skin.
-    fn among_turns(&self, found: Found) -> Found {
+    fn among_turns(&self, found: FoundPlacing) -> FoundPlacing {
         if self.scene.groom.up != Up::Auto || !self.is_free() {
             return found;
         }
@@ -268,9 +270,9 @@ impl Search<'_> {
                 let is_nearer = best.margin < found.margin;
                 let (margin, next) =
                     if is_nearer { (best.margin, best.next) } else { (found.margin, found.next) };
-                Found { margin, next, ..found }
+                FoundPlacing { margin, next, ..found }
             }
-            Some(best) => Found { margin: 0.0, next: Some(best.placing), ..found },
+            Some(best) => FoundPlacing { margin: 0.0, next: Some(best.placing), ..found },
             None => found,
         }
     }

@@ -1,13 +1,10 @@
 //! Requests in place of waits, and pictures in a host's texture.
 
 use glam::Vec3;
+use strandline_base::in_strand_order;
 
 use super::{Change, Inline, Session};
-use crate::{
-    Error,
-    groom::{LANES, Vec3Lanes},
-    sim::gpu::ComingPoints,
-};
+use crate::{Error, sim::gpu::ComingPoints};
 
 /// Runs of steps that a device may have before it, so that a slow one is not buried under them.
 const MOST_ON_WAY: usize = 3;
@@ -101,12 +98,7 @@ impl Session<Inline> {
         let guides = &self.view.guides;
         let (count, each) = (guides.strand_count(), guides.points_per_strand());
         self.points.clear();
-        let place = |strand: usize, point: usize| {
-            let lanes: &Vec3Lanes = &positions[strand / LANES * each + point];
-            lanes.get(strand % LANES) + asked.origin
-        };
-        let places = (0..count).flat_map(|strand| (0..each).map(move |point| (strand, point)));
-        self.points.extend(places.map(|(strand, point)| place(strand, point)));
+        self.points.extend(in_strand_order(&positions, count, each).map(|point| point + asked.origin));
         Ok(&self.points)
     }
 }

@@ -65,7 +65,7 @@ impl Engine {
         self.simulator.grabbed()
     }
 
-    /// The state, which a device is waited for.
+    /// The state. A device is waited for.
     pub fn state(&mut self) -> Result<&State, SimError> {
         self.guarded(|simulator| simulator.state().map(|_| ()))?;
         Ok(self.simulator.last_state())

@@ -3,7 +3,8 @@
 use glam::Vec3;
 
 use super::{
-    Bookmark, Executor, Live, Session, Task, air_hairs::with_hairs, job::Job, kept::Held, moment::Moment,
+    Bookmark, Executor, Live, Session, Task, air_hairs::with_hairs, job::Job, kept::HostMoment,
+    moment::Moment,
 };
 use crate::{
     Error,
@@ -51,9 +52,9 @@ impl<E: Executor> Session<E> {
     }
 
     /// The shown moment; its points must be on the host.
-    pub fn held(&self) -> Held<'_> {
+    pub fn held(&self) -> HostMoment<'_> {
         let Moment { body, origin, .. } = &self.shown;
-        Held { positions: self.shown.positions(), body, origin: *origin }
+        HostMoment { positions: self.shown.positions(), body, origin: *origin }
     }
 
     /// Brings the shown moment to the host. Tasks so far lead to it: the next frame begins with none.

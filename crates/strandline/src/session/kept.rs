@@ -17,8 +17,8 @@ pub(super) struct Kept {
     pub length: Option<f32>,
 }
 
-/// A moment of the hair on the host.
-pub(crate) struct Held<'a> {
+/// Points and body of a moment, on the host.
+pub(crate) struct HostMoment<'a> {
     /// Guide points \[m\], seen from the origin, shape `[block][point]` of lanes.
     pub positions: &'a [Vec3Lanes],
     /// Body, seen from the origin, and the origin \[m\].

@@ -42,7 +42,7 @@ pub(crate) use draft::Draft;
 pub use event::Event;
 pub(crate) use job::{Executor, Inline, Live, Task, Weather};
 pub use jump::Jump;
-pub(crate) use kept::Held;
+pub(crate) use kept::HostMoment;
 pub use pick::{Ray, Touched};
 pub(crate) use simulation::Simulation;
 pub(crate) use view::View;

@@ -1,16 +1,15 @@
 //! Source of the points of a picture.
 
 use glam::Vec3;
-use strandline_base::par::prelude::*;
 use strandline_gpu::{Buffer, Gpu, GpuError};
 
 use crate::{
     body::BodyFrame,
-    groom::{LANES, Vec3Lanes},
+    groom::Vec3Lanes,
     render::gpu::DevicePoints,
     sim::{
         State,
-        gpu::{ComingPoints, read_between},
+        gpu::{ComingPoints, PointCarrier, read_between},
     },
 };
 
@@ -29,7 +28,7 @@ pub(crate) struct Moment {
     pub origin: Vec3,
     pub at: When,
     /// Bodies of the two states around it, where the points follow the way of the body between them, and not straight
-    /// lines; such a moment is on the host.
+    /// lines.
     pub between: Option<[BodyFrame; 2]>,
 }
 
@@ -40,16 +39,34 @@ pub(crate) struct When {
     pub share: f32,
 }
 
-/// The two states around a moment, copied on their device.
+/// Copies of the two states around a moment on their device; or, once `is_carried`, the points of the moment in `after`.
 struct OnDevice {
     before: Buffer<f32>,
     after: Buffer<f32>,
+    is_carried: bool,
+    carrier: Option<PointCarrier>,
+}
+
+impl OnDevice {
+    fn new(gpu: &Gpu, len: usize) -> Result<Self, GpuError> {
+        Ok(Self {
+            before: Buffer::new(gpu, "points before", len)?,
+            after: Buffer::new(gpu, "points after", len)?,
+            is_carried: false,
+            carrier: None,
+        })
+    }
+
+    /// The states between which the moment lies; twice the same where its points are carried.
+    fn states(&self) -> [&Buffer<f32>; 2] {
+        [if self.is_carried { &self.after } else { &self.before }, &self.after]
+    }
 }
 
 impl Moment {
     /// The points where they lie on a device.
     pub fn device_points(&self) -> Option<DevicePoints<'_>> {
-        let OnDevice { before, after } = self.device.as_ref()?;
+        let [before, after] = self.device.as_ref()?.states();
         Some(DevicePoints { before, after, share: self.at.share })
     }
 
@@ -68,8 +85,8 @@ impl Moment {
     /// # Errors
     /// The device was lost.
     pub fn bring_home(&mut self) -> Result<(), GpuError> {
-        if let Some(OnDevice { before, after }) = self.device.as_ref().filter(|_| !self.on_host) {
-            read_between([before, after], self.at.share, &mut self.positions)?;
+        if let Some(device) = self.device.as_ref().filter(|_| !self.on_host) {
+            read_between(device.states(), self.at.share, &mut self.positions)?;
             self.on_host = true;
         }
         Ok(())
@@ -80,10 +97,10 @@ impl Moment {
     /// # Errors
     /// The device was lost.
     pub fn has_come_home(&mut self) -> Result<bool, GpuError> {
-        let Some(OnDevice { before, after }) = self.device.as_ref().filter(|_| !self.on_host) else {
+        let Some(device) = self.device.as_ref().filter(|_| !self.on_host) else {
             return Ok(true);
         };
-        let coming = self.coming.take().map_or_else(|| ComingPoints::begin([before, after]), Ok)?;
+        let coming = self.coming.take().map_or_else(|| ComingPoints::begin(device.states()), Ok)?;
         if !coming.has_arrived()? {
             self.coming = Some(coming);
             return Ok(false);
@@ -104,49 +121,45 @@ impl Moment {
     /// Takes the points of a state; none lie on a device then.
     pub fn fill(&mut self, state: &State) {
         match &self.between {
-            Some(bodies) => carried(state, bodies, &self.body, self.at.share, &mut self.positions),
+            Some([before, after]) => {
+                state.carried([before, after], &self.body, self.at.share, &mut self.positions);
+            }
             None => state.interpolated(self.at.share, &mut self.positions),
         }
         (self.on_host, self.device, self.coming) = (true, None, None);
     }
 
-    /// Copies the points on their device, so that the next step may begin while they are drawn.
-    pub fn fill_on(&mut self, gpu: &Gpu, [after, before]: [&Buffer<f32>; 2]) -> Result<(), GpuError> {
-        let copy = match self.device.take().filter(|kept| kept.after.len() == after.len()) {
+    /// Takes the points of the last two states on their device, so that the next step may begin while they are drawn: copies
+    /// of both, or the points between them where they follow a body. The strands are `shape[0]` of `shape[1]` points.
+    pub fn fill_on(
+        &mut self,
+        gpu: &Gpu,
+        [after, before]: [&Buffer<f32>; 2],
+        shape: [usize; 2],
+    ) -> Result<(), GpuError> {
+        let mut device = match self.device.take().filter(|kept| kept.after.len() == after.len()) {
             Some(kept) => kept,
-            None => OnDevice {
-                before: Buffer::new(gpu, "points before", before.len())?,
-                after: Buffer::new(gpu, "points after", after.len())?,
-            },
+            None => OnDevice::new(gpu, after.len())?,
         };
-        gpu.copy("copying points", [[before, &copy.before], [after, &copy.after]])?;
-        (self.device, self.on_host, self.coming) = (Some(copy), false, None);
+        device.is_carried = self.between.is_some();
+        match &self.between {
+            Some([from, to]) => {
+                let carrier = match device.carrier.take() {
+                    Some(carrier) => carrier,
+                    None => PointCarrier::new(gpu)?,
+                };
+                let bodies = [from, to, &self.body];
+                device.carrier.insert(carrier).carry(
+                    [before, after],
+                    bodies,
+                    self.at.share,
+                    shape,
+                    &device.after,
+                )?;
+            }
+            None => gpu.copy("copying points", [[before, &device.before], [after, &device.after]])?,
+        }
+        (self.device, self.on_host, self.coming) = (Some(device), false, None);
         Ok(())
     }
-}
-
-/// Points between two states in the root frames of their strands, carried to a body.
-fn carried(
-    state: &State,
-    [before, after]: &[BodyFrame; 2],
-    body: &BodyFrame,
-    share: f32,
-    positions: &mut Vec<Vec3Lanes>,
-) {
-    let points_per_strand = state.points_per_strand().max(1);
-    positions.resize(state.positions.len(), Vec3Lanes::default());
-    let old = state.previous_positions.par_chunks(points_per_strand);
-    let pairs = old.zip(state.positions.par_chunks(points_per_strand));
-    let blocks = positions.par_chunks_mut(points_per_strand).zip(pairs).enumerate();
-    blocks.for_each(|(block, (positions, (old, new)))| {
-        for lane in 0..LANES {
-            let root = |body: &BodyFrame| body.root(block * LANES + lane);
-            let [from_before, from_after] = [before, after].map(|body| root(body).inverse());
-            let to = root(body);
-            for ((position, old), new) in positions.iter_mut().zip(old).zip(new) {
-                let [old, new] = [from_before.point(old.get(lane)), from_after.point(new.get(lane))];
-                position.set(lane, to.point(old.lerp(new, share)));
-            }
-        }
-    });
 }

@@ -11,11 +11,11 @@ use super::{
     kept::Kept, moment::Moment,
 };
 use crate::{
-    BoundStrands, Devices, Error, Prepared, Scene,
-    body::{BodyFrame, Collider, Mesh},
+    BoundStrands, Devices, Error, HeadMotion, Prepared, Scene,
+    body::{Aabb, BodyFrame, Collider, Mesh},
     groom::Guides,
     prepare,
-    render::{BodyLook, Camera, LevelOfDetail, Light, Look, PictureSettings},
+    render::{Light, PictureSettings},
     scene::FilmSection,
     scene::camera_motion::CameraMotion,
     scene::devices::{Opened, Pair, device_name},
@@ -23,8 +23,8 @@ use crate::{
     session::painter::Painter,
     session::skin_carrier::SkinCarrier,
     session::worker::Worker,
-    sim::{Model, Settings},
-    strands::tags::Tags,
+    sim::{Model, SimError},
+    snapshot::hair_pose::HairPose,
 };
 
 /// Hairs that a guide of a scene stands for in the air: its share of those that the look has; `None` without a number.
@@ -34,66 +34,6 @@ fn hairs_of_a_guide(scene: &Scene, guides: &Guides) -> Option<f32> {
 }
 
 impl Session<Inline> {
-    /// Guides, and the strands that they carry, on a body: its drawn mesh and the solids that hair hits.
-    ///
-    /// # Errors
-    /// A setting outside its range; a device that refuses.
-    pub fn new(
-        devices: Pair,
-        guides: Guides,
-        bound: Option<BoundStrands>,
-        mesh: Option<&Mesh>,
-        colliders: Vec<Collider>,
-        settings: &Settings,
-    ) -> Result<Self, Error> {
-        let Pair { simulation: Opened { gpu, fall_back }, pictures, notes } = devices;
-        let mut engine = Engine::new(gpu.as_ref(), Model::new(&guides, settings, colliders)?, fall_back)?;
-        engine.notes.extend(notes);
-        let are_same = bound.as_ref().is_some_and(|bound| bound.solids().are(engine.model().colliders()));
-        let solids = pictures.gpu.as_ref().filter(|_| are_same).and_then(|gpu| engine.device_solids(gpu));
-        let bounds = prepare::bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh);
-        let mesh = mesh.cloned().map(Arc::new);
-        let skin = SkinCarrier::new(mesh.clone(), &guides);
-        let view = View {
-            painter: Painter::new(pictures, &guides, bound, mesh, solids)?,
-            guides,
-            bounds,
-            camera: Camera::front(),
-            look: Look::default(),
-            lights: Look::default().lights(prepare::center(bounds)),
-            body_look: BodyLook::default(),
-            level_of_detail: LevelOfDetail::default(),
-        };
-        let mut scene = Scene { simulation: settings.clone(), ..Scene::default() };
-        scene.groom.points_per_strand = view.guides.points_per_strand() as u32;
-        let simulated_on = device_name(engine.gpu());
-        let stiffening = engine.model().stiffening();
-        let mut simulation = Simulation::new(engine, settings.time_step);
-        simulation.skin = skin;
-        Ok(Self {
-            scene,
-            tags: Tags::default(),
-            executor: Inline::new(simulation),
-            view,
-            direction: Direction::default(),
-            settings: PictureSettings::default(),
-            draft: None,
-            camera_at_rest: Camera::front(),
-            camera_motion: None,
-            follows_camera: false,
-            simulated_on,
-            stiffening,
-            grabbed: 0,
-            simulated_after: 0,
-            spare: Vec::new(),
-            shown: Moment::default(),
-            points: Vec::new(),
-            events: VecDeque::new(),
-            drawn: 0,
-            kept: Kept::default(),
-        })
-    }
-
     /// Everything of a scene but its film and its devices. The scene is the prepared one, which fits its groom.
     ///
     /// # Errors
@@ -115,40 +55,56 @@ impl Session<Inline> {
         prepared.scene.check()?;
         let picture = prepared.scene.picture;
         let camera = prepared.camera(picture.width as f32 / picture.height as f32);
-        let Prepared { guides, bound, mesh, hidden, colliders, head, pose, scene, tags, .. } = prepared;
+        let Prepared { guides, bound, mesh, hidden, colliders, head, pose, bounds, scene, tags, .. } =
+            prepared;
         let (origin, colliders) = about(head.origin_at(scene.film.start), colliders);
         let bound =
             bound.map(|bound| if origin == Vec3::ZERO { bound } else { bound.among(colliders.clone()) });
         let head = head.seen_from(origin);
-        let pair = open()?;
+        let Pair { simulation, pictures, notes } = open()?;
         let hairs = hairs_of_a_guide(&scene, &guides);
-        let settings = with_hairs(&scene.simulation, hairs);
-        let mut session = Self::new(pair, guides, bound, mesh.as_ref(), colliders, &settings)?;
-        let view = &mut session.view;
-        view.lights = lights(&scene, view);
-        (view.camera, view.look) = (camera, scene.look.clone());
-        (view.body_look, view.level_of_detail) = (scene.body_look, scene.level_of_detail);
-        session.set_picture(picture)?;
-        let scales = vec![scene.groom.length; session.view.guides.strand_count()];
-        let simulation = session.executor.simulation_mut();
-        if let Some(mesh) = hidden {
-            simulation.skin = SkinCarrier::new(Some(Arc::new(mesh)), &session.view.guides);
-        }
+        let model = Model::new(&guides, &with_hairs(&scene.simulation, hairs), colliders)?;
+        let mut engine = Engine::new(simulation.gpu.as_ref(), model, simulation.fall_back)?;
+        engine.notes.extend(notes);
+        let mesh = mesh.map(Arc::new);
+        let painter = painter(pictures, &guides, bound, mesh.clone(), &engine)?;
+        let mut simulation = Simulation::new(engine, scene.simulation.time_step);
+        simulation.skin = SkinCarrier::new(hidden.map(Arc::new).or(mesh), &guides);
         (simulation.origin, simulation.hairs) = (origin, hairs);
-        if scene.groom.length != 1.0 {
-            simulation.engine.begin_with_lengths(&scales)?;
-        }
-        // A head that is turned at first does not whip its hair there.
-        let start = head.frame(scene.film.start);
-        match &pose {
-            Some(pose) => simulation.place(pose)?,
-            None if start != BodyFrame::REST => simulation.reset(start)?,
-            None => {}
-        }
-        session.direction = Direction::new(&scene, head);
-        session.camera_at_rest = camera;
-        session.camera_motion = CameraMotion::new(&scene.camera.keyframes, camera)?;
-        (session.scene, session.tags) = (scene, tags);
+        begin(&mut simulation, &scene, &head, pose.as_ref())?;
+        let view = View {
+            painter,
+            guides,
+            bounds,
+            camera,
+            look: scene.look.clone(),
+            lights: lights(&scene, bounds),
+            body_look: scene.body_look,
+            level_of_detail: scene.level_of_detail,
+        };
+        let mut session = Self {
+            simulated_on: device_name(simulation.gpu()),
+            stiffening: simulation.stiffening(),
+            executor: Inline::new(simulation),
+            view,
+            direction: Direction::new(&scene, head),
+            settings: PictureSettings::default(),
+            draft: None,
+            camera_at_rest: camera,
+            camera_motion: CameraMotion::new(&scene.camera.keyframes, camera)?,
+            follows_camera: false,
+            scene,
+            tags,
+            grabbed: 0,
+            simulated_after: 0,
+            spare: Vec::new(),
+            shown: Moment::default(),
+            points: Vec::new(),
+            events: VecDeque::new(),
+            drawn: 0,
+            kept: Kept::default(),
+        };
+        session.set_picture(picture)?;
         session.show()?;
         Ok(session)
     }
@@ -239,11 +195,6 @@ impl Session<Inline> {
         self.scene.film = film;
         Ok(())
     }
-
-    /// Sets the strands' attributes that files are given.
-    pub fn set_tags(&mut self, tags: Tags) {
-        self.tags = tags;
-    }
 }
 
 impl Session<Worker<Simulation>> {
@@ -253,10 +204,43 @@ impl Session<Worker<Simulation>> {
     }
 }
 
+/// The painter of a scene. Solids of the simulation are those of its pictures where both lie on one device.
+fn painter(
+    device: Opened,
+    guides: &Guides,
+    bound: Option<BoundStrands>,
+    mesh: Option<Arc<Mesh>>,
+    engine: &Engine,
+) -> Result<Painter, Error> {
+    let are_same = bound.as_ref().is_some_and(|bound| bound.solids().are(engine.model().colliders()));
+    let solids = device.gpu.as_ref().filter(|_| are_same).and_then(|gpu| engine.device_solids(gpu));
+    Ok(Painter::new(device, guides, bound, mesh, solids)?)
+}
+
+/// Puts hair and body where the film of a scene begins: in a pose, or at rest on the head as it is then. A head that is
+/// turned at first does not whip its hair there.
+fn begin(
+    simulation: &mut Simulation,
+    scene: &Scene,
+    head: &HeadMotion,
+    pose: Option<&HairPose>,
+) -> Result<(), SimError> {
+    if scene.groom.length != 1.0 {
+        let scales = vec![scene.groom.length; simulation.engine.model().strand_count()];
+        simulation.engine.begin_with_lengths(&scales)?;
+    }
+    let start = head.frame(scene.film.start);
+    match pose {
+        Some(pose) => simulation.place(pose),
+        None if start != BodyFrame::REST => simulation.reset(start),
+        None => Ok(()),
+    }
+}
+
 /// The lights of a scene: its own, else those of its surroundings, else those of its look.
-fn lights(scene: &Scene, view: &View) -> Vec<Light> {
+fn lights(scene: &Scene, bounds: Aabb) -> Vec<Light> {
     if scene.lights.is_empty() && scene.look.surroundings.is_none() {
-        return scene.look.lights(prepare::center(view.bounds));
+        return scene.look.lights(prepare::center(bounds));
     }
     scene.lights.clone()
 }

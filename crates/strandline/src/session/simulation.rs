@@ -363,13 +363,13 @@ impl Simulation {
         moment.body = self.exact.clone().unwrap_or_else(between);
         moment.at = When { step: self.engine.steps(), share };
         let rests = *before == moment.body && *after == moment.body;
-        // A host that never waits sees straight lines.
-        let may_wait = self.gpu().is_none_or(|gpu| gpu.check_wait("points").is_ok());
-        let follows = self.exact.is_some() && share < 1.0 && !rests && may_wait;
+        let follows = self.exact.is_some() && share < 1.0 && !rests;
         moment.between = follows.then(|| self.bodies.clone());
-        if let (Some(points), Some(gpu), None) = (self.engine.device_points(), gpu, &moment.between)
+        let model = self.engine.model();
+        let shape = [model.strand_count(), model.points_per_strand()];
+        if let (Some(points), Some(gpu)) = (self.engine.device_points(), gpu)
             && gpu.is_same(points[0].gpu())
-            && moment.fill_on(gpu, points).is_ok()
+            && moment.fill_on(gpu, points, shape).is_ok()
         {
             return Ok(());
         }

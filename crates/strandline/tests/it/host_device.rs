@@ -6,9 +6,12 @@ use strandline::{
     Backend, Change, Error, Event, FrameLoop, Picture, Prepared, Ray, Scene,
     device::{Gpu, GpuError, wgpu},
     look::Preset,
+    mesh::VertexMotion,
     scene::MotionName,
     settings::StrandMethod,
 };
+
+use super::skin;
 
 const SIZE: [u32; 2] = [64, 80];
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -248,6 +251,56 @@ fn a_host_that_never_waits_loads_any_hair_and_carries_it_over_a_jump() {
         (0..3).for_each(|_| pass(&mut hair));
     }
     assert_eq!(gpu.waits(), waits, "nothing has waited");
+}
+
+/// Frames lie between two steps: roots are where the body has them at that time, as on the host, and no frame waits for them.
+fn frames_between_steps_wait_for_nothing(gpu: &Gpu, loaded: impl Fn() -> Prepared) {
+    let mut hair = FrameLoop::with_device(loaded(), gpu).unwrap();
+    let mut own = FrameLoop::open(loaded(), Backend::Cpu).unwrap();
+    let view = texture(gpu, SIZE).create_view(&Default::default());
+    let rest = own.points().unwrap().to_vec();
+    let each = rest.len() / own.strand_count();
+    let (waits, mut farthest, mut moved) = (gpu.waits(), 0.0_f32, 0.0_f32);
+    for _ in 0..10 {
+        pass(&mut hair);
+        pass(&mut own);
+        hair.draw_to(&view, FORMAT).unwrap();
+        let (found, expected) = (points(&mut hair), own.points().unwrap());
+        for root in (0..rest.len()).filter(|point| point % each < 2) {
+            farthest = farthest.max(found[root].distance(expected[root]));
+            moved = moved.max(rest[root].distance(expected[root]));
+        }
+    }
+    assert_eq!(gpu.waits(), waits, "nothing has waited");
+    assert!(moved > 0.01, "the body moves by {moved} m");
+    // The order of operations differs between the backends.
+    assert!(farthest < 1e-5, "a root lies {farthest} m off");
+}
+
+/// A step in which straight lines leave the way of the body by a tenth of a millimetre or more.
+const LONG_STEP: f32 = 0.07;
+
+#[test]
+fn a_frame_between_two_steps_of_a_moving_head_waits_for_nothing() {
+    let Some(gpu) = gpu() else { return };
+    let mut scene = scene();
+    (scene.simulation.time_step, scene.motion.name) = (LONG_STEP, MotionName::Shake);
+    frames_between_steps_wait_for_nothing(&gpu, || Prepared::new(&scene).unwrap());
+}
+
+#[test]
+fn a_frame_between_two_steps_of_a_bending_skin_waits_for_nothing() {
+    let Some(gpu) = gpu() else { return };
+    let (mesh, groom, _) = skin::sheet();
+    let bent =
+        |frame: i32| mesh.positions.iter().map(|place| skin::bent(*place, 0.1 * frame as f32)).collect();
+    let times = (0..10).map(|frame| 0.03 * f64::from(frame)).collect();
+    let motion = VertexMotion::sampled(times, (0..10).map(bent).collect()).unwrap();
+    let sources = skin::sources(&mesh, &groom).with_motion("sheet", motion);
+    let mut moving = skin::scene();
+    moving.simulation.time_step = LONG_STEP;
+    (moving.look, moving.picture) = (scene().look, scene().picture);
+    frames_between_steps_wait_for_nothing(&gpu, || Prepared::from_sources(&moving, &sources).unwrap());
 }
 
 /// The device is lost while hair is in a hand: the CPU goes on with the same hair.

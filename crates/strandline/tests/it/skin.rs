@@ -4,16 +4,18 @@
 
 use glam::{Quat, Vec3, vec3};
 use strandline::{
-    Backend, Groom, Hair, Mesh, Pose, Settings,
+    Backend, Groom, Hair, Mesh, Pose, Prepared, Scene, Settings, Sources,
+    format::{Scale, Up},
     low_level::{
         body::{BodyFrame, SkinRoots},
         groom::Guides,
         sim::{CpuRunner, Drive, Model},
     },
+    scene::MotionName,
 };
 
 /// A sheet 20 cm wide in the plane y = 0, facing up, and hair that stands on it.
-fn sheet() -> (Mesh, Guides) {
+pub fn sheet() -> (Mesh, Groom, Guides) {
     let positions = (0..21 * 21).map(|index| vec3((index % 21) as f32, 0.0, (index / 21) as f32) * 0.01);
     let positions = positions.map(|place| place - vec3(0.1, 0.0, 0.1)).collect();
     let cell = |index: u32| {
@@ -26,11 +28,34 @@ fn sheet() -> (Mesh, Guides) {
         let root = vec3(0.006 * strand as f32 - 0.07, 0.0, 0.003 * strand as f32 - 0.03);
         groom.push((0..8).map(|point| root + Vec3::Y * 0.01 * point as f32));
     }
-    (mesh, Guides::resample(&groom, 8).unwrap())
+    let guides = Guides::resample(&groom, 8).unwrap();
+    (mesh, groom, guides)
+}
+
+/// The hair without weight on the sheet, which it does not hit.
+pub fn scene() -> Scene {
+    let mut scene = Scene::default();
+    scene.simulation.gravity = Vec3::ZERO;
+    (scene.groom.file, scene.body.file) = (Some("hair".into()), Some("sheet".into()));
+    (scene.groom.scale, scene.body.scale) = (Scale::Factor(1.0), Scale::Factor(1.0));
+    (scene.groom.up, scene.body.up) = (Up::Y, Up::Y);
+    (scene.groom.points_per_strand, scene.body.solid) = (8, false);
+    scene.motion.name = MotionName::Still;
+    scene
+}
+
+/// Hair and sheet of [`scene`].
+pub fn sources(mesh: &Mesh, groom: &Groom) -> Sources {
+    Sources::default().with_groom("hair", groom.clone()).with_mesh("sheet", mesh.clone())
+}
+
+fn hair(mesh: &Mesh, groom: &Groom) -> Hair {
+    let prepared = Prepared::from_sources(&scene(), &sources(mesh, groom)).unwrap();
+    Hair::from_prepared(prepared, Backend::Cpu).unwrap()
 }
 
 /// The sheet bent about a cylinder through an angle at its edge.
-fn bent(place: Vec3, angle: f32) -> Vec3 {
+pub fn bent(place: Vec3, angle: f32) -> Vec3 {
     if angle == 0.0 {
         return place;
     }
@@ -46,9 +71,8 @@ fn body(mesh: &Mesh, angle: f32) -> BodyFrame {
 
 #[test]
 fn roots_ride_a_bending_skin_and_hair_rests_on_it_once_it_stands() {
-    let (mesh, guides) = sheet();
-    let settings = Settings { gravity: Vec3::ZERO, ..Settings::default() };
-    let mut hair = Hair::with_body(Backend::Cpu, guides.clone(), Some(&mesh), Vec::new(), &settings).unwrap();
+    let (mesh, groom, guides) = sheet();
+    let mut hair = hair(&mesh, &groom);
     let clamps = |hair: &mut Hair, angle: f32| {
         let points = hair.points().unwrap();
         for strand in 0..24 {
@@ -75,7 +99,7 @@ fn roots_ride_a_bending_skin_and_hair_rests_on_it_once_it_stands() {
 
 #[test]
 fn hair_at_rest_on_a_posed_skin_stays() {
-    let (mesh, guides) = sheet();
+    let (mesh, _, guides) = sheet();
     let roots: Vec<Vec3> = (0..24).map(|strand| guides.position(strand, 0)).collect();
     let posed = SkinRoots::new(&mesh, &roots).placed(body(&mesh, 0.5), &BodyFrame::REST);
     let model =
@@ -94,9 +118,7 @@ fn hair_at_rest_on_a_posed_skin_stays() {
 
 #[test]
 fn hair_is_carried_over_a_jump_and_it_is_noted() {
-    let (mesh, guides) = sheet();
-    let settings = Settings { gravity: Vec3::ZERO, ..Settings::default() };
-    let hair = || Hair::with_body(Backend::Cpu, guides.clone(), Some(&mesh), Vec::new(), &settings).unwrap();
+    let (mesh, groom, guides) = sheet();
     let there = Pose { rotation: Quat::from_rotation_x(3.0), translation: vec3(2.0, 0.5, 0.0) };
     let aside = Pose { translation: Vec3::X * 0.01, ..Pose::IDENTITY };
     for (body, jumps) in [
@@ -105,7 +127,7 @@ fn hair_is_carried_over_a_jump_and_it_is_noted() {
         (BodyFrame::from(aside), false),
         (Pose { rotation: Quat::from_rotation_y(0.3), ..aside }.into(), false),
     ] {
-        let mut hair = hair();
+        let mut hair = hair(&mesh, &groom);
         let reports = hair.step(1.0 / 60.0, body.clone()).unwrap();
         let notes = hair.take_notes();
         assert_eq!(notes.iter().any(|note| note.contains("the body jumps")), jumps, "{notes:?}");

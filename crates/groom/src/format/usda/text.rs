@@ -267,7 +267,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Passes over variants: `"name" { prims and properties }`.
+    /// Skips variants: `"name" { prims and properties }`.
     fn skip_variants(&mut self, depth: usize) -> Result<(), Wrong> {
         self.at += 1;
         while !self.take(b'}') {

@@ -34,7 +34,7 @@ pub struct LightGrid {
     carried: Carried,
     toward: Option<Toward>,
     /// Of each cell, found when a place beside it is looked at: much hair is behind other hair.
-    found: Vec<OnceLock<Found>>,
+    found: Vec<OnceLock<CellLight>>,
 }
 
 /// Whom light is found for, and how hair scatters it.
@@ -49,7 +49,7 @@ struct Toward {
 
 /// All light but the straight one in a cell; what hair of its tangent shows toward the eye of it, and what the field
 /// alone says of that.
-type Found = (Field, [Vec4; 2]);
+type CellLight = (Field, [Vec4; 2]);
 
 impl LightGrid {
     /// Sums hair and skin, and carries light through them.
@@ -161,8 +161,8 @@ impl LightGrid {
 
     /// Sums what was carried through a cell into a field, and finds what its hair shows toward the eye.
     #[cold]
-    fn gather(&self, index: usize) -> Found {
-        let Some(toward) = &self.toward else { return Found::default() };
+    fn gather(&self, index: usize) -> CellLight {
+        let Some(toward) = &self.toward else { return CellLight::default() };
         let part = 1.0 / toward.sets as f32;
         let rays: [Rays; SETS] = std::array::from_fn(|set| self.carried.rays(set, index, &toward.around));
         let mut field = Field::default();

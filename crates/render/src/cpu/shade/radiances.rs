@@ -30,9 +30,9 @@ pub(crate) fn fill_all(strands: &Strands, shading: &dyn Shading, radiances: &mut
 
 /// Room for the light that one picture shows; kept from frame to frame.
 #[derive(Debug, Default)]
-pub(crate) struct Found(Vec<OnceLock<[Vec3; RUN]>>);
+pub(crate) struct LitRuns(Vec<OnceLock<[Vec3; RUN]>>);
 
-impl Found {
+impl LitRuns {
     /// Forgets what was found, and makes room for other strands.
     pub(crate) fn begin(&mut self, strands: &Strands) {
         self.0.par_iter_mut().for_each(|run| *run = OnceLock::new());
@@ -46,20 +46,20 @@ pub enum Radiances<'a> {
     /// Of every point: [`Strands::radiances`].
     Known(&'a Strands),
     /// Found when it is asked for: hair behind hair or a body, or beside the picture, is not lit.
-    Seen(Seen<'a>),
+    Lazy(LazyRadiances<'a>),
 }
 
 /// Light that is found when it is asked for.
 #[derive(Clone, Copy)]
-pub struct Seen<'a> {
-    found: &'a Found,
+pub struct LazyRadiances<'a> {
+    found: &'a LitRuns,
     shading: &'a dyn Shading,
     points_per_strand: usize,
 }
 
-impl<'a> Seen<'a> {
+impl<'a> LazyRadiances<'a> {
     /// Of strands for which `found` has begun.
-    pub(crate) fn new(strands: &Strands, found: &'a Found, shading: &'a dyn Shading) -> Self {
+    pub(crate) fn new(strands: &Strands, found: &'a LitRuns, shading: &'a dyn Shading) -> Self {
         Self { found, shading, points_per_strand: strands.points_per_strand }
     }
 
@@ -98,7 +98,7 @@ impl Radiances<'_> {
     pub(crate) fn pair(&self, point: usize) -> [Vec3; 2] {
         match self {
             Self::Known(strands) => [strands.radiances[point], strands.radiances[point + 1]],
-            Self::Seen(seen) => [seen.at(point), seen.at(point + 1)],
+            Self::Lazy(seen) => [seen.at(point), seen.at(point + 1)],
         }
     }
 
@@ -107,7 +107,7 @@ impl Radiances<'_> {
     pub(crate) fn known_pair(&self, point: usize) -> Option<[Vec3; 2]> {
         match self {
             Self::Known(_) => Some(self.pair(point)),
-            Self::Seen(seen) => Some([seen.known_at(point)?, seen.known_at(point + 1)?]),
+            Self::Lazy(seen) => Some([seen.known_at(point)?, seen.known_at(point + 1)?]),
         }
     }
 }
@@ -187,10 +187,10 @@ mod tests {
         strands.radiances = all;
         let known = draw(&strands, Radiances::Known(&strands));
         let numbered = Numbered(&strands, AtomicUsize::new(0));
-        let mut found = Found::default();
+        let mut found = LitRuns::default();
         for round in 1..=2 {
             found.begin(&strands);
-            let seen = draw(&strands, Radiances::Seen(Seen::new(&strands, &found, &numbered)));
+            let seen = draw(&strands, Radiances::Lazy(LazyRadiances::new(&strands, &found, &numbered)));
             assert!(seen == known && seen.iter().any(|color| color.w > 0.9));
             // The first curtain, what of the others is seen beside it, and what crosses the plane of the eye.
             let lit = numbered.1.load(Ordering::Relaxed) as f32 / (round * strands.positions.len()) as f32;

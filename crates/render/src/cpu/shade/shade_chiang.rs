@@ -9,7 +9,7 @@ use crate::cpu::scatter::light_grid::LightGrid;
 use crate::cpu::scatter::light_scene::{Scene, SkinColor};
 use crate::cpu::scatter::mixture::{Chance, lightness, pigments};
 use crate::cpu::scatter::occlusion::{Occlusion, toward};
-use crate::fibre::chiang::{Pigments, Seen, Table};
+use crate::fibre::chiang::{EyeRow, Pigments, Table};
 use crate::level_of_detail::EveryFew;
 use crate::light_field;
 use crate::lights::Shining;
@@ -230,7 +230,7 @@ impl ChiangShading<'_> {
         let sine = t.dot(to_eye);
         let u = light_field::across(t, to_eye);
         let (field, more) = self.grid.field(place);
-        let seen = Seen::new(sine, pigments);
+        let seen = EyeRow::new(sine, pigments);
         let moments = self.table.seen_moments(&seen);
         let mut sum = (light_field::shown(&field, &moments, t, u) * more).truncate();
         for light in &self.lights {

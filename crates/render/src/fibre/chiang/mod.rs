@@ -12,7 +12,7 @@ use strandline_base::{choices, settings};
 
 pub use lobes::{LOBES, Lobes};
 pub use moments::MOMENTS;
-pub use table::{AROUND, ENTRIES, LEVELS, Met, Pigments, Seen, Table};
+pub use table::{AROUND, ENTRIES, EyeRow, LEVELS, Met, Pigments, Table};
 pub(crate) use table::{Around, terms_along};
 
 /// Absorption per fibre radius of one unit of eumelanin and of pheomelanin \[d'Eon2011\].

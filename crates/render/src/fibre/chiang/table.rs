@@ -62,7 +62,7 @@ pub enum Pigments {
 
 /// Table look-ups of one point of hair that all lights share.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub struct EyeRow {
     /// Inclination of the eye \[rad\], its sine, and one less the square of that.
     angle: f32,
     sine: f32,
@@ -74,7 +74,7 @@ pub struct Seen {
     even: bool,
 }
 
-impl Seen {
+impl EyeRow {
     /// For the sine of the eye's inclination and a multiple of the pigment.
     #[inline]
     pub fn new(sine: f32, pigments: Pigments) -> Self {
@@ -167,19 +167,19 @@ impl Table {
     /// highlights.
     #[inline]
     pub fn scatter(&self, eye: f32, light: f32, turn: f32, pigments: Pigments, shift: f32) -> Vec3 {
-        self.shown(&Seen::new(eye, pigments), light, turn, shift)
+        self.shown(&EyeRow::new(eye, pigments), light, turn, shift)
     }
 
     /// [`Table::scatter`] of many lights that one point shows.
     #[inline]
-    pub fn shown(&self, seen: &Seen, light: f32, turn: f32, shift: f32) -> Vec3 {
+    pub fn shown(&self, seen: &EyeRow, light: f32, turn: f32, shift: f32) -> Vec3 {
         let [r, tt, trt] = self.by_path(seen, &Met::new(light), turn, shift);
         r + tt + trt
     }
 
     /// [`Table::shown`] of R, TT and TRT.
     #[inline]
-    pub fn by_path(&self, seen: &Seen, met: &Met, turn: f32, shift: f32) -> [Vec3; 3] {
+    pub fn by_path(&self, seen: &EyeRow, met: &Met, turn: f32, shift: f32) -> [Vec3; 3] {
         self.by_path_along(&self.entries, seen, met, turn, shift)
     }
 
@@ -188,7 +188,7 @@ impl Table {
     pub(crate) fn by_path_along(
         &self,
         terms: &[Vec4],
-        seen: &Seen,
+        seen: &EyeRow,
         met: &Met,
         turn: f32,
         shift: f32,
@@ -204,9 +204,9 @@ impl Table {
 
     /// Terms along the fibre, and the node before the turn of a cosine with the share of the way to the next one.
     #[inline]
-    fn along(&self, terms: &[Vec4], seen: &Seen, met: &Met, turn: f32, shift: f32) -> (Along, (usize, f32)) {
-        let cosines = (seen.square * met.square).max(0.0).sqrt();
-        let along = along(terms, seen.angle, met.angle, shift) / evened(cosines, self.floor);
+    fn along(&self, terms: &[Vec4], eye: &EyeRow, met: &Met, turn: f32, shift: f32) -> (Along, (usize, f32)) {
+        let cosines = (eye.square * met.square).max(0.0).sqrt();
+        let along = along(terms, eye.angle, met.angle, shift) / evened(cosines, self.floor);
         let turn = FRAC_PI_2 as f32 - arc_sine(turn);
         (Along(along), place(turn * std::f32::consts::FRAC_1_PI, TURNS))
     }
@@ -229,7 +229,7 @@ impl Table {
 
     /// Shares of light that go as R, TT and TRT.
     #[inline]
-    pub fn shares(&self, seen: &Seen) -> [Vec3; 3] {
+    pub fn shares(&self, seen: &EyeRow) -> [Vec3; 3] {
         let [first, second] = if seen.even {
             self.even_shares(seen.row, seen.levels[0])
         } else {
@@ -253,12 +253,12 @@ impl Table {
     /// The fibre's moments (see `moments.rs`) for the sine of the eye's inclination and a multiple of the pigment.
     #[inline]
     pub fn moments(&self, eye: f32, pigments: Pigments) -> [Vec4; MOMENTS] {
-        self.seen_moments(&Seen::new(eye, pigments))
+        self.seen_moments(&EyeRow::new(eye, pigments))
     }
 
     /// [`Table::moments`] as the eye sees a fibre.
     #[inline]
-    pub fn seen_moments(&self, seen: &Seen) -> [Vec4; MOMENTS] {
+    pub fn seen_moments(&self, seen: &EyeRow) -> [Vec4; MOMENTS] {
         if seen.even {
             self.even_moments(seen.angle, seen.levels[0])
         } else {

@@ -169,7 +169,7 @@ pub(crate) struct LightGrid {
     /// The fibre's tables, and scattered light of every cell.
     glow: Buffer<[f32; 4]>,
     made: Option<Made>,
-    bounds: Option<Bounds>,
+    bounds: Option<GridKernels>,
 }
 
 /// Buffers of one set of directions.
@@ -179,18 +179,18 @@ struct SetBuffers {
 }
 
 /// The kernels, bound to the buffers of the moment.
-pub(crate) struct Bounds {
+pub(crate) struct GridKernels {
     pub sum_hair: Bound,
     pub sum_skin: Bound,
     pub prepare: Bound,
     pub weigh: Bound,
-    pub sets: [SetBounds; SETS],
+    pub sets: [SetKernels; SETS],
     pub shade: Bound,
     pub light_skin: Bound,
 }
 
 /// The kernels of one set of directions; `scatter` is that of light along it toward the next set.
-pub(crate) struct SetBounds {
+pub(crate) struct SetKernels {
     pub enter: Bound,
     pub carry: Bound,
     pub scatter: Bound,
@@ -250,7 +250,7 @@ impl LightGrid {
     }
 
     /// The kernels, where they are bound.
-    pub fn bounds(&self) -> Option<&Bounds> {
+    pub fn bounds(&self) -> Option<&GridKernels> {
         self.bounds.as_ref()
     }
 
@@ -284,13 +284,13 @@ impl LightGrid {
         strands: &Strands,
         maps: &Maps,
         targets: &Targets,
-    ) -> Result<Bounds, GpuError> {
+    ) -> Result<GridKernels, GpuError> {
         let Groom { frame, triangles, vertices, corners, surfaces, .. } = groom;
         let Strands { points, radiances, .. } = strands;
         let Maps { texels: maps, body: body_depths, .. } = maps;
         let Targets { samples, triangles: triangle_numbers, depth: depths } = targets;
         let Self { sums, cells, lattice: cubes, glow, .. } = self;
-        Ok(Bounds {
+        Ok(GridKernels {
             sum_hair: self
                 .sum_hair
                 .bind(gpu, &SumHair { frame, points, colors: radiances, maps, body_depths, cubes, sums })?,
@@ -325,13 +325,13 @@ impl LightGrid {
 
 impl LightGrid {
     /// Binds the kernels of a set of directions.
-    fn bind_set(&self, gpu: &Gpu, groom: &Groom, set: usize) -> Result<SetBounds, GpuError> {
+    fn bind_set(&self, gpu: &Gpu, groom: &Groom, set: usize) -> Result<SetKernels, GpuError> {
         let Groom { frame, cubes: open, .. } = groom;
         let Self { sums, cells, rays, lattice: cubes, glow, .. } = self;
         let SetBuffers { ways, straight } = &self.sets[set];
         let next = &self.sets[(set + 1) % SETS].straight;
         let enter = Enter { frame, open, cubes, sums, cells, rays, ways, straight };
-        Ok(SetBounds {
+        Ok(SetKernels {
             enter: self.enter.bind(gpu, &enter)?,
             carry: self.carry.bind(gpu, &Carry { frame, cells, rays, ways })?,
             scatter: self.scatter.bind(gpu, &Scatter { frame, cubes, cells, rays, ways, straight: next })?,

@@ -99,7 +99,7 @@ fn carried_light_keeps_its_inclination_as_long_as_a_fibre_lets_it() {
     });
     let sphere: Vec<Vec3> = (0..TANGENTS).flat_map(|index| [tangent(index), -tangent(index)]).collect();
     let exact = Table::new(&lobes, [0.0; 3]);
-    let seen = Seen::new(MEAN_SINE, Pigments::Even(1.0));
+    let seen = EyeRow::new(MEAN_SINE, Pigments::Even(1.0));
     let around = exact.around_of(&seen);
     let of_fibre = kept(&lattice, &sphere, |tangent, to, from| {
         let (t, (way, share)) = (lattice.tangents[tangent], lattice.ways(0)[from]);

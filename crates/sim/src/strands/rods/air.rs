@@ -33,8 +33,8 @@ pub struct Wisp<R> {
 }
 
 impl<R: Real> Wisp<R> {
-    /// A wisp of a number of hairs of a diameter \[m\], which fill a share of its section, and whose guide has the mass of
-    /// a number of them.
+    /// A wisp of `hairs` hairs of a diameter \[m\], which fill the share `packing` of its section. Its guide has the mass of
+    /// `massive` hairs.
     #[inline(always)]
     pub fn new(diameter: R, hairs: R, massive: R, packing: R) -> Self {
         let wider = (hairs * (R::of(1.0) / packing)).root();

@@ -173,7 +173,7 @@ impl<R: Real> Work<R> {
         self.air[node] = [x, y, z, stiffness];
     }
 
-    /// Displacement \[m\] with the air and force over displacement \[N/m\] of a node.
+    /// Displacement \[m\] to which the air takes a node, and its force over the distance from there \[N/m\].
     #[inline(always)]
     pub fn blown(&self, node: usize) -> (Vector<R>, R) {
         let [x, y, z, stiffness] = self.air[node];

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use crate::{
     Prepared,
-    groom::{Guides, LANES, Vec3Lanes},
+    groom::Guides,
     sim::{Settings, StrandMethod, rods::RodSettings},
 };
 use hidden::Silhouette;
@@ -92,12 +92,6 @@ pub struct Overlaid {
 
 /// Distances \[mm\] over which the colours of contacts run.
 pub(super) const NEAR: f32 = 5.0;
-
-/// Points in the order of strands, of those in blocks of lanes.
-pub(super) fn in_order(blocks: &[Vec3Lanes], [strands, each]: [usize; 2]) -> impl Iterator<Item = Vec3> + '_ {
-    let at = move |strand: usize, point: usize| blocks[strand / LANES * each + point].get(strand % LANES);
-    (0..strands).flat_map(move |strand| (0..each).map(move |point| at(strand, point)))
-}
 
 /// Stretch \[%\] of the segment before each point of guides that are scaled in length; roots have that of their segment.
 pub(super) fn stretches(world: &[Vec3], guides: &Guides, scale: f32) -> Vec<f32> {
@@ -193,14 +187,6 @@ mod tests {
         assert!(scaled.iter().all(|value| value.abs() < 0.01), "{scaled:?}");
         let [low, high] = range(Overlay::Stretch, &values);
         assert!((high - 10.0).abs() < 0.01 && low == -high);
-    }
-
-    #[test]
-    fn points_in_blocks_come_strand_after_strand() {
-        let guides = guides();
-        let places: Vec<Vec3> = in_order(guides.positions(), [3, 5]).collect();
-        let expected: Vec<Vec3> = (0..15).map(|index| guides.position(index / 5, index % 5)).collect();
-        assert_eq!(places, expected);
     }
 
     #[test]

@@ -12,7 +12,7 @@ use crate::{
     body::BodyFrame,
     cache::kept::{FrameNote, KeptFile, MarkNote},
     groom::block_count,
-    live::timeline::{Frame, Points, Timeline},
+    live::timeline::{KeptFrame, Points, Timeline},
     session::{Bookmark, Executor, Session, Weather, resuming},
     sim::{Clock, StepReport},
     snapshot::{Snapshot, arrays::check_memory},
@@ -128,7 +128,7 @@ fn fill<E: Executor>(
         before = ended.or(reached);
         let reports = reports_of(&note);
         let mut frame =
-            Frame { points: None, body: BodyFrame::REST, origin, time: 0.0, made, bookmark, reports };
+            KeptFrame { points: None, body: BodyFrame::REST, origin, time: 0.0, made, bookmark, reports };
         if let Some(row) = number.checked_sub(kept) {
             let (time, body, points) = file.frame(row as usize)?;
             (frame.time, frame.body) = (time, session.recognized(body));

@@ -15,7 +15,7 @@ use crate::{
         kept::{self, DirectionNote, FrameNote, MarkNote, Meta},
         relative,
     },
-    live::timeline::{Frame, Points, Timeline},
+    live::timeline::{KeptFrame, Points, Timeline},
     scene::PROJECT_SCENE,
     session::{Bookmark, Executor, Session, Simulation},
     sim::StepReport,
@@ -51,7 +51,7 @@ pub fn save<E: Executor>(
     std::fs::create_dir_all(folder).map_err(Error::save("the project", folder))?;
     scene.timeline.frames = None;
     let mut scenes = Scenes::default();
-    let tasks = |frame: &Frame| frame.made.as_ref().and_then(|made| scenes.notes(made));
+    let tasks = |frame: &KeptFrame| frame.made.as_ref().and_then(|made| scenes.notes(made));
     let tasks: Vec<_> = timeline.up_to_date().map(tasks).collect();
     let [first, ..] = timeline.bounds();
     let alone = |number: u32| tasks.get((number - first) as usize).is_none_or(Option::is_none);

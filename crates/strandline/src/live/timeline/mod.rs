@@ -21,7 +21,7 @@ pub(crate) use store::Points;
 use crate::{
     body::BodyFrame,
     scene::TimelineSection,
-    session::{Bookmark, Held, Live, Task},
+    session::{Bookmark, HostMoment, Live, Task},
     sim::StepReport,
 };
 use store::Spool;
@@ -33,7 +33,7 @@ const FOR_MARKS: u64 = 4;
 const MEGABYTE: u64 = 1_000_000;
 
 /// A frame that is kept.
-pub(crate) struct Frame {
+pub(crate) struct KeptFrame {
     /// Its guide points; `None` where there was no room for them.
     pub points: Option<Arc<Points>>,
     /// Body, seen from the origin, and the origin \[m\].
@@ -48,7 +48,7 @@ pub(crate) struct Frame {
     pub reports: Vec<StepReport>,
 }
 
-impl Frame {
+impl KeptFrame {
     /// Bytes in memory, and in the file.
     fn bytes(&self) -> [u64; 2] {
         let [memory, disk] = self.points.as_ref().map_or([0; 2], |points| points.bytes());
@@ -66,7 +66,7 @@ pub(crate) struct Timeline {
     most: [u64; 2],
     used: [u64; 2],
     /// The frames, and the number of the first of them. Before `kept` they have no points.
-    frames: VecDeque<Frame>,
+    frames: VecDeque<KeptFrame>,
     first: u32,
     kept: u32,
     /// The last frame that is up to date: those after it are stale.
@@ -128,7 +128,7 @@ impl Timeline {
     }
 
     /// Begins with the hair at its beginning.
-    pub fn begin(&mut self, held: &Held, time: f64, bookmark: Option<Bookmark>) -> Option<String> {
+    pub fn begin(&mut self, held: &HostMoment, time: f64, bookmark: Option<Bookmark>) -> Option<String> {
         self.frames.clear();
         (self.first, self.kept, self.good, self.playhead, self.at) = (0, 0, 0, 0, 0);
         (self.used, self.under_way, self.spool) = ([0; 2], None, None);
@@ -143,7 +143,7 @@ impl Timeline {
     }
 
     /// The frames that are up to date, with and without points.
-    pub fn up_to_date(&self) -> impl Iterator<Item = &Frame> {
+    pub fn up_to_date(&self) -> impl Iterator<Item = &KeptFrame> {
         self.frames.iter().take((self.good + 1 - self.first) as usize)
     }
 
@@ -155,7 +155,7 @@ impl Timeline {
     }
 
     /// Adds a frame of a project behind the last, and moves the playhead to it. Returns a note where there is no room.
-    pub fn push(&mut self, frame: Frame) -> Option<String> {
+    pub fn push(&mut self, frame: KeptFrame) -> Option<String> {
         let [memory, disk] = frame.bytes();
         self.used = [self.used[0] + memory, self.used[1] + disk];
         self.frames.push_back(frame);
@@ -174,14 +174,14 @@ impl Timeline {
         self.first..=number.min(self.last())
     }
 
-    fn entry(&self, number: u32) -> &Frame {
+    fn entry(&self, number: u32) -> &KeptFrame {
         &self.frames[(number - self.first) as usize]
     }
 
     /// Adds the frame that was simulated, and moves the playhead to it. Returns a note where there is no room for it.
     pub fn add(
         &mut self,
-        held: &Held,
+        held: &HostMoment,
         time: f64,
         bookmark: Option<Bookmark>,
         reports: Vec<StepReport>,
@@ -212,13 +212,13 @@ impl Timeline {
     }
 
     /// The frame with a number, if it is kept, stale or not.
-    pub fn frame(&self, number: u32) -> Option<&Frame> {
+    pub fn frame(&self, number: u32) -> Option<&KeptFrame> {
         let index = number.checked_sub(self.first)?;
         self.frames.get(index as usize).filter(|frame| frame.points.is_some())
     }
 
     /// The frame with a number, if it is kept and up to date.
-    pub fn good_frame(&self, number: u32) -> Option<&Frame> {
+    pub fn good_frame(&self, number: u32) -> Option<&KeptFrame> {
         self.frame(number).filter(|_| number <= self.good)
     }
 
@@ -333,7 +333,7 @@ impl Timeline {
 
     /// Takes every second bookmark out where all of them take too much.
     fn thin_marks(&mut self) {
-        let bytes = |frame: &Frame| frame.bookmark.as_ref().map_or(0, |bookmark| bookmark.bytes());
+        let bytes = |frame: &KeptFrame| frame.bookmark.as_ref().map_or(0, |bookmark| bookmark.bytes());
         let all: u64 = self.frames.iter().map(bytes).sum();
         if all <= self.most[0] / FOR_MARKS {
             return;
@@ -348,19 +348,19 @@ impl Timeline {
     }
 }
 
-fn in_memory(frame: &Frame) -> bool {
+fn in_memory(frame: &KeptFrame) -> bool {
     frame.points.as_deref().is_some_and(|points| matches!(points, Points::Memory(_)))
 }
 
 fn frame(
-    held: &Held,
+    held: &HostMoment,
     time: f64,
     made: Option<(Vec<Task>, Live)>,
     bookmark: Option<Bookmark>,
     mut reports: Vec<StepReport>,
-) -> Frame {
+) -> KeptFrame {
     reports.iter_mut().for_each(|report| report.seconds = Vec::new());
-    Frame {
+    KeptFrame {
         points: Some(Arc::new(Points::Memory(held.positions.to_vec()))),
         body: held.body.clone(),
         origin: held.origin,

@@ -78,14 +78,14 @@ fn frames_beyond_the_memory_lie_on_the_disk_and_those_beyond_both_are_forgotten(
     timeline.begin(&held, 0.0, Some(bookmark));
     for frame in 1..=60 {
         positions[7].x[3] = frame as f32;
-        let held = crate::session::Held { positions: &positions, ..held };
+        let held = crate::session::HostMoment { positions: &positions, ..held };
         assert_eq!(timeline.add(&held, 0.0, None, Vec::new()), None);
         assert!(timeline.used[0] <= 13_000_000 && timeline.used[1] <= 4_000_000, "{:?}", timeline.used);
     }
     let counted = timeline
         .frames
         .iter()
-        .map(super::Frame::bytes)
+        .map(super::KeptFrame::bytes)
         .fold([0; 2], |sum, [memory, disk]| [sum[0] + memory, sum[1] + disk]);
     assert_eq!(timeline.used, counted, "what is counted is what is there");
     let shown = timeline.shown(30.0, 0.0);

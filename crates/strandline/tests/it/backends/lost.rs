@@ -4,7 +4,7 @@ use strandline::{
     Backend, ErrorKind, Event, Hair, Player, Settings, device::Gpu, file::Film, settings::VolumeSettings,
 };
 
-use super::{apart, gpu, hair, scene, turned};
+use super::{apart, gpu, hair, prepared, scene, turned};
 
 #[test]
 fn a_lost_gpu_is_an_error_that_names_it_and_the_last_state_stays() {
@@ -64,11 +64,7 @@ fn steps_that_a_lost_gpu_had_made_are_made_again() {
     let play = |gpu: Option<&Gpu>, checkpoint_every: u32| {
         let mut hair = match gpu {
             Some(gpu) => hair(gpu),
-            None => {
-                let prepared = strandline::Prepared::new(&scene()).unwrap();
-                let settings = scene().simulation;
-                Hair::with_body(Backend::Cpu, prepared.guides, None, prepared.colliders, &settings).unwrap()
-            }
+            None => Hair::from_prepared(prepared(), Backend::Cpu).unwrap(),
         };
         hair.set_fall_back(true);
         hair.set_settings(&Settings { checkpoint_every, ..hair.settings().clone() }).unwrap();

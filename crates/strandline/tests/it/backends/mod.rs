@@ -4,7 +4,7 @@
 mod lost;
 
 use strandline::{
-    Backend, Devices, Event, Hair, Picture, Player, Pose, Scene,
+    Backend, Devices, Event, Hair, Picture, Player, Pose, Prepared, Scene,
     device::Gpu,
     look::Preset,
     low_level::{
@@ -44,13 +44,17 @@ fn scene() -> Scene {
     scene
 }
 
+/// The scene without its body, which hair still hits.
+fn prepared() -> Prepared {
+    let mut scene = scene();
+    scene.body.visible = false;
+    Prepared::new(&scene).unwrap()
+}
+
 fn hair(gpu: &Gpu) -> Hair {
-    let scene = scene();
-    let prepared = strandline::Prepared::new(&scene).unwrap();
-    let hair = Hair::with_device(gpu, prepared.guides, None, prepared.colliders, &scene.simulation);
-    let mut hair = hair.unwrap();
+    let mut hair = Hair::with_device(prepared(), gpu).unwrap();
     // Two lights with shadow and one without, each shining from one place.
-    hair.set_lights(scene.look.lights(glam::Vec3::ZERO)).unwrap();
+    hair.set_lights(scene().look.lights(glam::Vec3::ZERO)).unwrap();
     hair
 }
 
@@ -315,8 +319,7 @@ fn mic0_is_for_the_cpu_and_auto_takes_it_there() {
     let Some(gpu) = gpu() else { return };
     let mut scene = scene();
     scene.simulation.volume.preconditioner = strandline::settings::Preconditioner::Mic0;
-    let prepared = strandline::Prepared::new(&scene).unwrap();
-    let made = Hair::with_device(&gpu, prepared.guides, None, Vec::new(), &scene.simulation);
+    let made = Hair::with_device(Prepared::new(&scene).unwrap(), &gpu);
     let error = made.err().unwrap().to_string();
     assert!(error.contains("mic0") && error.contains("chebyshev"), "{error}");
 }

@@ -1,6 +1,6 @@
 use glam::{Vec3, Vec4};
 
-use super::{AROUND, EYES, Met, Seen, TURNS, Table, channels};
+use super::{AROUND, EYES, EyeRow, Met, TURNS, Table, channels};
 
 /// Terms along a fibre of R, TT and TRT.
 pub(super) struct Along(pub Vec4);
@@ -23,7 +23,7 @@ pub(crate) struct Around {
 
 impl Table {
     /// The terms around the fibre of the pigment of a point.
-    pub(crate) fn around_of(&self, seen: &Seen) -> Around {
+    pub(crate) fn around_of(&self, seen: &EyeRow) -> Around {
         let entry = |at: usize| {
             let of_level = |level: usize| self.entries[AROUND + 2 * level * EYES * TURNS + at];
             let found =
@@ -39,7 +39,7 @@ impl Table {
     pub(crate) fn by_path_around(
         &self,
         (terms, around): (&[Vec4], &Around),
-        seen: &Seen,
+        seen: &EyeRow,
         met: &Met,
         turn: f32,
     ) -> [Vec3; 3] {
@@ -73,11 +73,11 @@ mod tests {
         let pigments =
             [Pigments::Even(1.0), Pigments::Even(0.3), Pigments::Channels(Vec3::new(0.1, 1.5, 0.02))];
         for (number, pigments) in pigments.into_iter().enumerate() {
-            let around = table.around_of(&Seen::new(0.0, pigments));
+            let around = table.around_of(&EyeRow::new(0.0, pigments));
             for index in 0..200 {
                 let mut random = strandline_base::Random::new(4, index);
                 let [eye, light, turn] = [(); 3].map(|()| 2.0 * random.unit() - 1.0);
-                let (seen, met) = (Seen::new(eye, pigments), Met::new(light));
+                let (seen, met) = (EyeRow::new(eye, pigments), Met::new(light));
                 let found = table.by_path_around((&table.entries, &around), &seen, &met, turn);
                 let expected = table.by_path(&seen, &met, turn, 0.0);
                 for (found, expected) in found.into_iter().zip(expected) {
