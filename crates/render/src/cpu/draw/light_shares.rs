@@ -8,7 +8,7 @@
 use glam::Vec4;
 
 use super::coverage::OPAQUE;
-use super::under::{Under, is_near};
+use super::pixels::{Pixels, is_near};
 use crate::cpu::shade::skin::SkinPoint;
 use crate::frame::samples::TILE;
 use crate::shadow::ShadowMap;
@@ -20,7 +20,7 @@ const LEAST: usize = 4;
 
 /// The shares in a tile, in which each pixel is looked at once.
 pub(super) struct LightShares<'a> {
-    under: &'a Under<'a>,
+    pixels: &'a Pixels<'a>,
     /// Pixels along a side: those of the tile and one at each end.
     side: usize,
     /// True for pixels that show the body, not hair alone; those beside the tile may.
@@ -35,22 +35,22 @@ pub(super) struct LightShares<'a> {
 
 impl<'a> LightShares<'a> {
     /// None yet; colours are those of the hair in the tile.
-    pub fn new(under: &'a Under<'a>, colors: &[Vec4]) -> Self {
-        let inner = TILE / under.pixel;
+    pub fn new(pixels: &'a Pixels<'a>, colors: &[Vec4]) -> Self {
+        let inner = TILE / pixels.side;
         let side = inner + 2;
         let is_open = |sample: usize, [column, row]: [usize; 2]| {
             let (x, y) =
-                (column * under.pixel + sample % under.pixel, row * under.pixel + sample / under.pixel);
+                (column * pixels.side + sample % pixels.side, row * pixels.side + sample / pixels.side);
             colors[y * TILE + x].w < OPAQUE
         };
         let shown = (0..side * side).map(|index| {
             let [column, row] = [index % side, index / side];
             let is_inner = (1..=inner).contains(&column) && (1..=inner).contains(&row);
-            !is_inner || (0..under.pixel * under.pixel).any(|sample| is_open(sample, [column - 1, row - 1]))
+            !is_inner || (0..pixels.side * pixels.side).any(|sample| is_open(sample, [column - 1, row - 1]))
         });
         let shown = shown.collect();
         let places = vec![None; side * side];
-        Self { under, side, shown, places, quarters: Vec::new(), at: None }
+        Self { pixels, side, shown, places, quarters: Vec::new(), at: None }
     }
 
     /// Turns to a pixel of the tile, at a column and a row, where it shows the body at one over a view depth \[1/m\].
@@ -83,7 +83,7 @@ impl<'a> LightShares<'a> {
         if self.quarters[known].is_nan() {
             let (place, _) = self.place(index)?;
             let inner = self.side - 2;
-            let parity = |axis: usize, at: usize| (self.under.corner[axis] / TILE * inner + at) % 2;
+            let parity = |axis: usize, at: usize| (self.pixels.corner[axis] / TILE * inner + at) % 2;
             let quarter = parity(0, index % self.side) + 2 * parity(1, index / self.side);
             self.quarters[known] = map.quarter_on_skin(place.point, place.normal, places, quarter)?;
         }
@@ -92,18 +92,18 @@ impl<'a> LightShares<'a> {
 
     /// The place of the first sample of a pixel that shows the body.
     fn place(&mut self, index: usize) -> Option<(SkinPoint, f32)> {
-        let (under, side) = (self.under, self.side);
+        let (pixels, side) = (self.pixels, self.side);
         *self.places[index].get_or_insert_with(|| {
-            let pixel = under.pixel;
+            let pixel = pixels.side;
             let begin = [index % side, index / side].map(|at| (at as isize - 1) * pixel as isize);
             let sample = |number: usize| {
                 let at = [begin[0] + (number % pixel) as isize, begin[1] + (number / pixel) as isize];
-                let at = [0, 1].map(|axis| under.corner[axis].checked_add_signed(at[axis]));
+                let at = [0, 1].map(|axis| pixels.corner[axis].checked_add_signed(at[axis]));
                 let [Some(column), Some(row)] = at else { return None };
-                under.seen.at([column, row])
+                pixels.seen.at([column, row])
             };
             let (triangle, depth) = (0..pixel * pixel).find_map(sample)?;
-            Some((under.place(triangle, begin), depth))
+            Some((pixels.place(triangle, begin), depth))
         })
     }
 }

@@ -4,6 +4,7 @@ mod body;
 mod coverage;
 mod light_shares;
 mod occluders;
+mod pixels;
 mod ribbons;
 mod sight;
 mod sort;
@@ -17,6 +18,7 @@ use strandline_body::{BodyFrame, Mesh};
 use self::body::Body;
 use self::coverage::{End, Joint, OPAQUE, TileSamples};
 use self::occluders::Occluders;
+use self::pixels::Pixels;
 use self::ribbons::{Ribbons, Segment};
 use self::tiles::{TileRect, Tiles};
 use self::under::Under;
@@ -150,8 +152,9 @@ impl Draw {
             if let Some(body) = &self.body
                 && !bare
             {
-                let pixel = input.supersampling as usize;
-                Under { body, projection, skin, seen, corner, triangles, depths, pixel }.fill(colors);
+                let side = input.supersampling as usize;
+                let pixels = Pixels { body, projection, seen, corner, side };
+                Under { pixels, skin, triangles, depths }.fill(colors);
             }
             if let Some(background) = input.background {
                 background.fill(colors, at.y, height);

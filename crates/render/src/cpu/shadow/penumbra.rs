@@ -251,8 +251,8 @@ impl ShadowMap {
         }))
     }
 
-    /// What `of` makes of the shares that reach a point of skin along the rays that it asks for; 1 where nothing can lie
-    /// before any of them.
+    /// Share that `of` finds from those that reach a point of skin along the rays that it asks for; 1 where nothing can
+    /// lie before any of them.
     #[inline]
     fn along(
         &self,

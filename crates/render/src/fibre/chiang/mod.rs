@@ -1,6 +1,7 @@
 //! The rough dielectric fibre of \[Chiang2016\], seen from afar: what is thinner than a pixel shows the mean over
 //! its width.
 
+mod around;
 mod lobes;
 mod moments;
 mod ring;
@@ -10,10 +11,11 @@ use glam::{DVec3, Vec3};
 use strandline_base::math;
 use strandline_base::{choices, settings};
 
+pub(crate) use around::Around;
 pub use lobes::{LOBES, Lobes};
 pub use moments::MOMENTS;
+pub(crate) use table::terms_along;
 pub use table::{AROUND, ENTRIES, EyeRow, LEVELS, Met, Pigments, Table};
-pub(crate) use table::{Around, terms_along};
 
 /// Absorption per fibre radius of one unit of eumelanin and of pheomelanin \[d'Eon2011\].
 const EUMELANIN: DVec3 = DVec3::new(0.419, 0.697, 1.37);

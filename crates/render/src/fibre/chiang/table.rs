@@ -3,20 +3,16 @@
 //! Radiance over irradiance is the sum over the kinds of paths of a term along the fibre, which depends on both
 //! inclinations, times one around it, which depends on the eye's inclination, the turn and the pigment.
 
-mod around;
-
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{Vec3, Vec4};
 use strandline_base::math;
 use strandline_base::par::prelude::*;
 
-use super::lobes::{LOBES, Lobes};
+use super::lobes::Lobes;
 use super::moments::{MOMENTS, moments, powers};
-pub use super::ring::TURNS;
-use super::ring::{Ring, turn_sums};
-use around::Along;
-pub(crate) use around::Around;
+pub use super::ring::{LEVEL_COUNT, LEVELS, TURNS};
+use super::ring::{Ring, rings, turn_sums};
 
 /// Nodes of the sum of both inclinations, -pi to pi.
 pub const SUMS: usize = 257;
@@ -26,12 +22,6 @@ pub const DIFFERENCES: usize = 49;
 pub const EYES: usize = 17;
 /// Nodes of the eye's inclination of the moments, -pi / 2 to pi / 2.
 pub const MOMENT_EYES: usize = 2 * EYES - 1;
-/// Number of [`LEVELS`].
-pub const LEVEL_COUNT: usize = 8;
-/// Multiples of the pigment at the root for which there are entries; the first is white hair.
-pub const LEVELS: [f32; LEVEL_COUNT] = [0.0, 1.0 / 64.0, 1.0 / 16.0, 0.25, 0.5, 1.0, 2.0, 4.0];
-/// Offsets across the width that are summed.
-const OFFSETS: usize = 96;
 
 /// First entry of the terms around the fibre: two for each `[level][eye][turn]`.
 pub const AROUND: usize = SUMS * DIFFERENCES;
@@ -68,9 +58,9 @@ pub struct EyeRow {
     sine: f32,
     square: f32,
     /// Node before the angle, and share of the way to the next one.
-    row: (usize, f32),
+    pub(super) row: (usize, f32),
     /// Levels of the pigment, of one channel or of three.
-    levels: [(usize, f32); 3],
+    pub(super) levels: [(usize, f32); 3],
     even: bool,
 }
 
@@ -194,21 +184,29 @@ impl Table {
         shift: f32,
     ) -> [Vec3; 3] {
         let (along, turn) = self.along(terms, seen, met, turn, shift);
-        along.times(if seen.even {
+        let around = if seen.even {
             self.around(seen.row, turn, seen.levels[0])
         } else {
             let found = seen.levels.map(|level| self.around(seen.row, turn, level));
             channels(found, [0, 1].map(|term| found[0][term].w))
-        })
+        };
+        paths(along, around)
     }
 
     /// Terms along the fibre, and the node before the turn of a cosine with the share of the way to the next one.
     #[inline]
-    fn along(&self, terms: &[Vec4], eye: &EyeRow, met: &Met, turn: f32, shift: f32) -> (Along, (usize, f32)) {
+    pub(super) fn along(
+        &self,
+        terms: &[Vec4],
+        eye: &EyeRow,
+        met: &Met,
+        turn: f32,
+        shift: f32,
+    ) -> (Vec4, (usize, f32)) {
         let cosines = (eye.square * met.square).max(0.0).sqrt();
         let along = along(terms, eye.angle, met.angle, shift) / evened(cosines, self.floor);
         let turn = FRAC_PI_2 as f32 - arc_sine(turn);
-        (Along(along), place(turn * std::f32::consts::FRAC_1_PI, TURNS))
+        (along, place(turn * std::f32::consts::FRAC_1_PI, TURNS))
     }
 
     /// Terms around the fibre between nodes of the eye's inclination, the turn and the pigment.
@@ -305,9 +303,15 @@ fn along(terms: &[Vec4], eye: f32, light: f32, shift: f32) -> Vec4 {
     near.lerp(far, part)
 }
 
+/// R, TT and TRT by their terms along the fibre and around it.
+#[inline]
+pub(super) fn paths(along: Vec4, [first, second]: [Vec4; 2]) -> [Vec3; 3] {
+    [Vec3::splat(first.w * along.x), first.truncate() * along.y, second.truncate() * along.z]
+}
+
 /// One channel of each of three, and last lanes.
 #[inline]
-fn channels<const N: usize>(found: [[Vec4; N]; 3], last: [f32; N]) -> [Vec4; N] {
+pub(super) fn channels<const N: usize>(found: [[Vec4; N]; 3], last: [f32; N]) -> [Vec4; N] {
     std::array::from_fn(|at| Vec4::new(found[0][at].x, found[1][at].y, found[2][at].z, last[at]))
 }
 
@@ -350,51 +354,4 @@ fn level_of(pigment: f32) -> (usize, f32) {
 
 fn vector(channels: [f64; 3]) -> Vec3 {
     Vec3::from(channels.map(|channel| channel as f32))
-}
-
-/// Mean over the width of share times density of the turn, at each node of the turn, for each level of pigment.
-fn rings(lobes: &Lobes, eye: f64, absorption: [f64; 3]) -> [Ring; LEVEL_COUNT] {
-    let absorptions = LEVELS.map(|level| absorption.map(|channel| channel * f64::from(level)));
-    let mut rings = LEVELS.map(|_| vec![[[0.0; 3]; LOBES]; TURNS]);
-    for offset in 0..OFFSETS {
-        // Even steps of the angle at which the ray meets the surface; both sides are the same but for the turn's sign.
-        let angle = FRAC_PI_2 * (offset as f64 + 0.5) / OFFSETS as f64;
-        let (h, weight) = (math::sin(angle), math::cos(angle) * FRAC_PI_2 / OFFSETS as f64);
-        let shares = absorptions.map(|absorption| lobes.shares(eye, h, absorption));
-        for index in 0..TURNS {
-            let turn = PI * index as f64 / (TURNS - 1) as f64;
-            let (one, other) = (lobes.turns(eye, h, turn), lobes.turns(eye, h, -turn));
-            for (ring, shares) in rings.iter_mut().zip(&shares) {
-                for lobe in 0..LOBES {
-                    let density = 0.5 * weight * (one[lobe] + other[lobe]);
-                    (0..3).for_each(|channel| ring[index][lobe][channel] += density * shares[lobe][channel]);
-                }
-            }
-        }
-    }
-    for (ring, absorption) in rings.iter_mut().zip(absorptions) {
-        balance(ring, lobes, eye, absorption);
-    }
-    rings
-}
-
-/// Scales each kind of path so that the table, linear between nodes, integrates to the share of light on that path.
-fn balance(ring: &mut Ring, lobes: &Lobes, eye: f64, absorption: [f64; 3]) {
-    let mut shares = [[0.0; 3]; LOBES];
-    for offset in 0..4 * OFFSETS {
-        let angle = FRAC_PI_2 * (offset as f64 + 0.5) / (4 * OFFSETS) as f64;
-        let weight = math::cos(angle) * FRAC_PI_2 / (4 * OFFSETS) as f64;
-        let found = lobes.shares(eye, math::sin(angle), absorption);
-        for lobe in 0..LOBES {
-            (0..3).for_each(|channel| shares[lobe][channel] += weight * found[lobe][channel]);
-        }
-    }
-    let whole = turn_sums(ring, |_| 1.0);
-    for found in ring.iter_mut() {
-        for lobe in 0..LOBES {
-            for channel in 0..3 {
-                found[lobe][channel] *= shares[lobe][channel] / whole[lobe][channel].max(1e-300);
-            }
-        }
-    }
 }

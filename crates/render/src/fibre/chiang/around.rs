@@ -1,18 +1,8 @@
+//! Terms around the fibre of one pigment.
+
 use glam::{Vec3, Vec4};
 
-use super::{AROUND, EYES, EyeRow, Met, TURNS, Table, channels};
-
-/// Terms along a fibre of R, TT and TRT.
-pub(super) struct Along(pub Vec4);
-
-impl Along {
-    /// R, TT and TRT with terms around the fibre.
-    #[inline]
-    pub fn times(self, [first, second]: [Vec4; 2]) -> [Vec3; 3] {
-        let Self(along) = self;
-        [Vec3::splat(first.w * along.x), first.truncate() * along.y, second.truncate() * along.z]
-    }
-}
+use super::table::{AROUND, EYES, EyeRow, Met, TURNS, Table, channels, paths};
 
 /// Terms around a fibre of one pigment: those of a table, with nothing between its levels left to be found.
 #[derive(Clone, Debug)]
@@ -44,7 +34,7 @@ impl Table {
         turn: f32,
     ) -> [Vec3; 3] {
         let (along, turn) = self.along(terms, seen, met, turn, 0.0);
-        along.times(around.at(seen.row, turn))
+        paths(along, around.at(seen.row, turn))
     }
 }
 
@@ -63,9 +53,8 @@ impl Around {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Pigments;
+    use super::super::{Chiang, Pigments};
     use super::*;
-    use crate::fibre::Chiang;
 
     #[test]
     fn terms_of_one_pigment_are_those_of_the_table() {
