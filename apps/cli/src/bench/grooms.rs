@@ -72,9 +72,10 @@ pub fn run(device: Option<&Device>, options: &BenchOptions) -> anyhow::Result<Re
     print_line!("\nfrom two files to a picture{:>20}{:>12}{:>14}", "seconds", "MB", "segments");
     let mut first_pictures = Vec::new();
     let [fur, animal] = furry(FUR[quick], folder.path())?;
-    let own = options.groom.iter().map(|groom| (groom.as_path(), options.body.as_deref()));
-    for (groom, body) in own.chain([(fur.as_path(), Some(animal.as_path()))]) {
-        let first = first(groom, body, folder.path())?;
+    let own = options.groom.iter().map(|groom| (groom.as_path(), options.body.as_deref(), &[][..]));
+    let made = (fur.as_path(), Some(animal.as_path()), &UPRIGHT[..]);
+    for (groom, body, placed) in own.chain([made]) {
+        let first = first(groom, body, placed, folder.path())?;
         let memory = first.peak_memory_mb.map_or("unknown".to_owned(), |mb| format!("{mb:.0}"));
         print_line!("{:<27}{:>20.2}{memory:>12}{:>14}", first.groom, first.seconds, first.segments);
         first_pictures.push(first);
@@ -104,6 +105,9 @@ pub fn run(device: Option<&Device>, options: &BenchOptions) -> anyhow::Result<Re
     print_line!("{:<59}{rate:>14.0}", "at least");
     Ok(Results { first_pictures, bound, written })
 }
+
+/// The animal is the same upside down, so that its fur has to be told.
+const UPRIGHT: [&str; 2] = ["--up", "y"];
 
 /// A fur of strands of 3 cm, and the animal under it: an ellipsoid of two metres.
 fn furry(count: usize, folder: &Path) -> anyhow::Result<[PathBuf; 2]> {
@@ -153,12 +157,12 @@ fn ellipsoid(half: Vec3) -> String {
 }
 
 /// Runs this program as an artist does, without kept files of earlier runs.
-fn first(groom: &Path, body: Option<&Path>, folder: &Path) -> anyhow::Result<First> {
+fn first(groom: &Path, body: Option<&Path>, placed: &[&str], folder: &Path) -> anyhow::Result<First> {
     let mut command = Command::new(std::env::current_exe()?);
     command
         .args(["render", "--frames", "1", "--json", "--backend", "cpu", "--out"])
         .arg(folder.join("first"));
-    command.arg("--groom").arg(groom);
+    command.arg("--groom").arg(groom).args(placed);
     if let Some(body) = body {
         command.arg("--body").arg(body);
     }
@@ -219,4 +223,22 @@ fn write(ending: &'static str, frames: u32, folder: &Path) -> anyhow::Result<Wri
     let megabytes = 1e-6 * written.bytes as f64;
     let megabytes_per_second = megabytes / written.time.as_secs_f64();
     Ok(Written { ending, frames: written.frames, points: written.points, megabytes, megabytes_per_second })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ffi::OsString;
+
+    use super::*;
+
+    #[test]
+    fn the_fur_finds_its_place_on_the_animal() {
+        let folder = tempfile::tempdir().unwrap();
+        let [fur, animal] = furry(FUR[1].min(1000), folder.path()).unwrap();
+        let [fur, animal] = [&fur, &animal].map(|path| path.to_str().unwrap());
+        let plain =
+            ["strandline", "sim", "--frames", "1", "--backend", "cpu", "--groom", fur, "--body", animal];
+        let run = |more: &[&str]| crate::run_program(plain.iter().chain(more).map(OsString::from));
+        assert_eq!([run(&UPRIGHT), run(&[])], [0, 1]);
+    }
 }
