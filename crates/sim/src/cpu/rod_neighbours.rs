@@ -17,7 +17,7 @@ use crate::wisps::boxes::{Boxes, Met};
 use crate::wisps::pair::{Near, Pair};
 use crate::wisps::place::NEAR;
 use crate::wisps::radii::number;
-use crate::wisps::strips::Around;
+use crate::wisps::strips::SegmentBox;
 
 /// Parts of a step for which a margin lasts while a point goes on as it does, the least margin \[m\], and the most for more
 /// than one part: boxes that are much wider than others are cut.
@@ -43,7 +43,7 @@ struct Candidate {
 #[derive(Clone, Default)]
 pub(super) struct Neighbours {
     boxes: Boxes,
-    around: Vec<Around>,
+    around: Vec<SegmentBox>,
     met: Vec<Met>,
     candidates: Vec<Candidate>,
     /// Radii \[m\] of the list.
@@ -270,7 +270,7 @@ impl Neighbours {
 
     /// Boxes about the segments of all strands in the frame of the head, and about their ways if they are moving, wider by
     /// what is near them and what segments are wider on each side.
-    fn find_boxes(&self, hair: &Hair, moving: bool, around: &mut Vec<Around>) {
+    fn find_boxes(&self, hair: &Hair, moving: bool, around: &mut Vec<SegmentBox>) {
         let points = hair.model.points_per_strand;
         let segments = hair.model.strand_count.div_ceil(LANES) * LANES * (points - 1);
         let box_of = |index: usize| {
@@ -290,7 +290,7 @@ impl Neighbours {
                 Vec3::NAN
             };
             let (low, high) = (a[0].min(b[0]) - more, a[1].max(b[1]) + more);
-            Around { low, high, segment, strand: (block * LANES + lane) as u32 }
+            SegmentBox { low, high, segment, strand: (block * LANES + lane) as u32 }
         };
         (0..segments).into_par_iter().with_min_len(CHUNK).map(box_of).collect_into_vec(around);
     }

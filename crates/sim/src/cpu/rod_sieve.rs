@@ -15,8 +15,8 @@ pub(super) const ROUNDING: f32 = 1e-5;
 /// Square of a sine below which two segments count as parallel: what both are across is rounding.
 const PARALLEL: f32 = 1e-6;
 
-/// Segments in a part of a step, seen along two directions across one of them and along that across both: where they are, or if they are moving on all
-/// of their way.
+/// Segments in a part of a step, seen along two directions across one of them and along that across both: where they
+/// are, or if they are moving on all of their way.
 pub(super) struct Across<'a> {
     /// Radii \[m\] of segments and inverse masses \[1/kg\] of points, by block and point.
     pub(super) radii: &'a [Lanes],

@@ -4,7 +4,7 @@ use strandline_base::par::prelude::*;
 use strandline_groom::LANES;
 use wide::f32x8;
 
-use super::strips::{Around, Layout, Place};
+use super::strips::{BoxBins, Layout, SegmentBox};
 
 /// Entries that a thread takes at a time.
 const CHUNK: usize = 256;
@@ -50,7 +50,7 @@ struct Corners {
 /// Scratch of the search, kept.
 #[derive(Clone, Debug, Default)]
 pub struct Boxes {
-    places: Vec<Place>,
+    places: Vec<BoxBins>,
     /// First entry of each bin of each strip.
     starts: Vec<u32>,
     /// Box and strip of each entry.
@@ -61,7 +61,7 @@ pub struct Boxes {
 
 /// Sorted boxes of a search, and how their segments are tested.
 struct Search<'a, S: Sieve> {
-    boxes: &'a [Around],
+    boxes: &'a [SegmentBox],
     sorted: &'a Boxes,
     layout: Layout,
     sieve: &'a S,
@@ -73,7 +73,7 @@ impl Boxes {
     /// lower number first, in rising order. Segments of boxes rise; `eights` is scratch.
     pub fn pairs<S: Sieve>(
         &mut self,
-        boxes: &[Around],
+        boxes: &[SegmentBox],
         sieve: &S,
         eights: &mut Vec<S::Eight>,
         pairs: &mut Vec<Met>,
@@ -108,7 +108,7 @@ impl Boxes {
 
 impl Corners {
     /// Corners of the boxes of a group of entries; lanes behind the last are empty.
-    fn of(group: usize, order: &[[u32; 2]], boxes: &[Around], layout: &Layout) -> Self {
+    fn of(group: usize, order: &[[u32; 2]], boxes: &[SegmentBox], layout: &Layout) -> Self {
         let mut low = [[f32::MAX; LANES]; 3];
         let mut high = [[f32::MIN; LANES]; 3];
         for (lane, [index, _]) in order[group * LANES..].iter().take(LANES).enumerate() {
@@ -202,21 +202,40 @@ mod tests {
         }
     }
 
-    impl Around {
+    impl SegmentBox {
         fn meets(&self, other: &Self) -> bool {
             self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
         }
     }
 
     #[test]
+    fn boxes_far_from_all_others_leave_them_their_strips() {
+        let mut random = Random::new(3, 0);
+        let mut boxes: Vec<SegmentBox> = (0..4000)
+            .map(|segment| {
+                let low = Vec3::new(random.unit(), random.unit(), random.unit()) * 0.5;
+                SegmentBox { low, high: low + 0.01, segment, strand: segment }
+            })
+            .collect();
+        (boxes[7].low, boxes[7].high) = (Vec3::splat(1e4), Vec3::splat(1e4 + 1.0));
+        (boxes[9].low, boxes[9].high) = (Vec3::splat(-90.0), Vec3::splat(-89.0));
+        let layout = Layout::new(&boxes).unwrap();
+        let places: Vec<_> = boxes.iter().map(|one| layout.place(one)).collect();
+        let (mut starts, mut order) = (Vec::new(), Vec::new());
+        layout.sort(&places, &mut starts, &mut order);
+        let fullest = starts.windows(2).map(|ends| ends[1] - ends[0]).max();
+        assert!(fullest < Some(60), "{fullest:?}");
+    }
+
+    #[test]
     fn each_pair_of_boxes_that_meet_is_found_once() {
         let mut random = Random::new(7, 0);
-        let boxes: Vec<Around> = (0..700)
+        let boxes: Vec<SegmentBox> = (0..700)
             .map(|segment| {
                 let mut vector = |size: f32| Vec3::new(random.unit(), random.unit(), random.unit()) * size;
                 let low = vector(1.0) - Vec3::splat(0.5);
                 let side = if segment % 50 == 0 { 0.4 } else { 0.12 };
-                Around { low, high: low + vector(side), segment, strand: segment / 10 }
+                SegmentBox { low, high: low + vector(side), segment, strand: segment / 10 }
             })
             .collect();
         let mut expected = Vec::new();
@@ -239,13 +258,14 @@ mod tests {
             for seed in 0..40 {
                 let mut random = Random::new(seed, count);
                 let mut vector = |size: f32| Vec3::new(random.unit(), random.unit(), random.unit()) * size;
-                let few: Vec<Around> = (0..count as u32)
+                let few: Vec<SegmentBox> = (0..count as u32)
                     .map(|segment| {
                         let low = vector(0.5);
-                        Around { low, high: low + 0.3 + vector(0.8), segment, strand: segment }
+                        SegmentBox { low, high: low + 0.3 + vector(0.8), segment, strand: segment }
                     })
                     .collect();
-                let meets = |one: &Around, other: &Around| one.segment < other.segment && one.meets(other);
+                let meets =
+                    |one: &SegmentBox, other: &SegmentBox| one.segment < other.segment && one.meets(other);
                 let expected: usize =
                     few.iter().map(|one| few.iter().filter(|other| meets(one, other)).count()).sum();
                 room.pairs(&few, &Boxed(|_| Some(0.0)), &mut Vec::new(), &mut found);

@@ -5,7 +5,7 @@ use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
 use super::boxes::{Boxes, Sieve};
 use super::place::{between, nearest};
-use super::strips::Around;
+use super::strips::SegmentBox;
 
 /// Hair at rest as radii are measured on it, shapes `[block][point]` of lanes.
 pub(crate) struct AtRest<'a> {
@@ -44,7 +44,7 @@ impl AtRest<'_> {
                     passed[lane] += length;
                     radii[index].0[lane] = radius;
                     let [a, b] = self.ends(index as u32 * LANES as u32 + lane as u32);
-                    boxes.push(Around {
+                    boxes.push(SegmentBox {
                         low: a.min(b) - Vec3::splat(radius),
                         high: a.max(b) + Vec3::splat(radius),
                         segment: number(block, point, points, lane),

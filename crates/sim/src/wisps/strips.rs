@@ -1,6 +1,6 @@
 //! Boxes in strips along an axis.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// Width of a strip, and of a bin along it, over the mean of the sides of boxes.
 const WIDE: f32 = 2.0;
@@ -8,12 +8,15 @@ const BIN: f32 = 0.25;
 /// Most strips along each axis, and most bins of a strip.
 const MOST_STRIPS: u32 = 64;
 const MOST_BINS: u32 = 1024;
+/// Distance from the middle of all, over their root mean square, beyond which a box is far, and rounds that look for it.
+const FAR: f64 = 4.0;
+const ROUNDS: usize = 3;
 /// Most strips that a box takes along an axis: of a larger one those about its middle.
 const MOST_TAKEN: u32 = 8;
 
 /// A box about the way of a segment; it is left out if a corner is not finite.
 #[derive(Clone, Copy, Debug)]
-pub struct Around {
+pub struct SegmentBox {
     /// Corners \[m\].
     pub low: Vec3,
     pub high: Vec3,
@@ -22,10 +25,10 @@ pub struct Around {
     pub strand: u32,
 }
 
-/// Place of a box: bins of its lower and its upper corner, and the strips that it takes, from the first to the last along
-/// two axes. A box that is left out takes none.
+/// Bins of a box's lower and upper corners, and the strips that it takes, from the first to the last along two axes. A
+/// box that is left out takes none.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct BoxBins {
     bin: u32,
     pub last_bin: u32,
     first: [u16; 2],
@@ -44,11 +47,10 @@ pub struct Layout {
 
 impl Layout {
     /// Axes along which boxes are short, first; none without boxes.
-    pub fn new(boxes: &[Around]) -> Option<Self> {
-        let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::splat(f32::MIN));
+    pub fn new(boxes: &[SegmentBox]) -> Option<Self> {
+        let (low, high) = most_of(boxes);
         let (mut sides, mut count) = ([0.0_f64; 3], 0_u32);
         for one in boxes.iter().filter(|one| is_whole(one)) {
-            (low, high) = (low.min(one.low), high.max(one.high));
             let side = (one.high - one.low).to_array();
             sides.iter_mut().zip(side).for_each(|(sum, side)| *sum += f64::from(side));
             count += 1;
@@ -76,12 +78,13 @@ impl Layout {
         (((place - self.low[row]) * self.per_metre[row]) as u32).min(self.counts[row] - 1)
     }
 
-    pub fn place(&self, one: &Around) -> Place {
+    pub fn place(&self, one: &SegmentBox) -> BoxBins {
         if !is_whole(one) {
-            return Place { bin: 0, last_bin: 0, first: [1; 2], last: [0; 2] };
+            return BoxBins { bin: 0, last_bin: 0, first: [1; 2], last: [0; 2] };
         }
         let at = |row: usize, corner: Vec3| self.piece(row, corner[self.axes[row]]);
-        let mut place = Place { bin: at(0, one.low), last_bin: at(0, one.high), first: [0; 2], last: [0; 2] };
+        let mut place =
+            BoxBins { bin: at(0, one.low), last_bin: at(0, one.high), first: [0; 2], last: [0; 2] };
         let middle = 0.5 * one.low + 0.5 * one.high;
         for row in 1..3 {
             let (first, last, middle) = (at(row, one.low), at(row, one.high), at(row, middle));
@@ -92,15 +95,15 @@ impl Layout {
     }
 
     /// Strips that a box takes.
-    fn strips(&self, place: &Place) -> impl Iterator<Item = u32> + use<> {
-        let (rows, Place { first, last, .. }) = (self.counts[1], *place);
+    fn strips(&self, place: &BoxBins) -> impl Iterator<Item = u32> + use<> {
+        let (rows, BoxBins { first, last, .. }) = (self.counts[1], *place);
         (first[1]..=last[1]).flat_map(move |column| {
             (first[0]..=last[0]).map(move |row| u32::from(column) * rows + u32::from(row))
         })
     }
 
     /// The first strip of those that two boxes take, which may be of none.
-    pub fn first_of_both(&self, [one, other]: [&Place; 2]) -> u32 {
+    pub fn first_of_both(&self, [one, other]: [&BoxBins; 2]) -> u32 {
         let [row, column] = [0, 1].map(|axis| u32::from(one.first[axis].max(other.first[axis])));
         column * self.counts[1] + row
     }
@@ -111,7 +114,7 @@ impl Layout {
     }
 
     /// Sorts boxes by strips and bins: the first entry of each bin, and box and strip of each entry.
-    pub fn sort(&self, places: &[Place], starts: &mut Vec<u32>, order: &mut Vec<[u32; 2]>) {
+    pub fn sort(&self, places: &[BoxBins], starts: &mut Vec<u32>, order: &mut Vec<[u32; 2]>) {
         let [bins, rows, columns] = self.counts.map(|count| count as usize);
         starts.clear();
         starts.resize(bins * rows * columns + 1, 0);
@@ -140,7 +143,31 @@ impl Layout {
     }
 }
 
-fn is_whole(one: &Around) -> bool {
+/// Corners \[m\] about boxes, those far from all others left out: their places are taken for the nearest within.
+fn most_of(boxes: &[SegmentBox]) -> (Vec3, Vec3) {
+    let (mut low, mut high) = (Vec3::splat(f32::MIN), Vec3::splat(f32::MAX));
+    // Beside a box that is very far all others lie at one place: each round leaves out what is far on its own scale.
+    for _ in 0..ROUNDS {
+        let within =
+            |one: &&SegmentBox| is_whole(one) && one.low.cmpge(low).all() && one.high.cmple(high).all();
+        let (mut sum, mut squares, mut count) = (DVec3::ZERO, DVec3::ZERO, 0.0);
+        let (mut least, mut most) = (Vec3::splat(f32::MAX), Vec3::splat(f32::MIN));
+        for one in boxes.iter().filter(within) {
+            let middle = 0.5 * one.low.as_dvec3() + 0.5 * one.high.as_dvec3();
+            (sum, squares, count) = (sum + middle, squares + middle * middle, count + 1.0);
+            (least, most) = (least.min(one.low), most.max(one.high));
+        }
+        if count == 0.0 {
+            break;
+        }
+        let mean = sum / count;
+        let reach = FAR * (squares / count - mean * mean).max(DVec3::ZERO).map(f64::sqrt);
+        (low, high) = (least.max((mean - reach).as_vec3()), most.min((mean + reach).as_vec3()));
+    }
+    (low, high.max(low))
+}
+
+fn is_whole(one: &SegmentBox) -> bool {
     one.low.is_finite() && one.high.is_finite()
 }
 

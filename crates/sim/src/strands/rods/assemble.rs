@@ -11,8 +11,9 @@ const ROUNDING: f64 = 1e-6;
 
 impl<R: Real> Work<R> {
     /// Assembles the gradient and the Hessian, and eliminates from root to tip. Moments turn with the sections where they
-    /// are less than `turns` of those of inertia: [`ALL`], or with 0 none, which leaves the Hessian's positive part. Returns the largest force \[N\] of a solid on each strand, at `first` also of solids that may come to
-    /// press, and 1 where the eliminated matrix is positive definite, else 0.
+    /// are less than `turns` of those of inertia: [`ALL`], or with 0 none, which leaves the Hessian's positive part.
+    /// Returns the largest force \[N\] of a solid on each strand, at `first` also of solids that may come to press, and 1
+    /// where the eliminated matrix is positive definite, else 0.
     #[inline(always)]
     pub(super) fn factorise(
         &mut self,
