@@ -7,6 +7,7 @@ use strandline_base::{
 };
 
 use crate::lights::shadow_places;
+use crate::scatter::ways::{DIRECTIONS, SETS, TANGENTS};
 use crate::shadow::part_count;
 use crate::{DetailLevel, LevelOfDetail, Light, Look, PictureSettings, RenderError};
 
@@ -25,9 +26,13 @@ const CURVE_BYTES: u64 = 36;
 /// Bytes of a shadow map's texel: layers and the body's depth, and the sums and depths that each of the threads fills.
 const TEXEL_BYTES: u64 = 20;
 const PART_BYTES: u64 = 20;
-/// Cells of the grid of scattered light, and bytes of one: light along 26 directions four times, sums and fields.
-const GRID_CELLS: u64 = 43 * 43 * 43;
-const CELL_BYTES: u64 = 26 * 16 * 4 + 640;
+/// Cells of the grid of scattered light that are filled, half of all since hair lies about a body, and bytes of one: along
+/// the directions of each set what hair shows, its share of direct light, what leaves the cell and the cell before;
+/// effects of cells along half of them; sums and fields.
+const GRID_CELLS: u64 = 43 * 43 * 43 / 2;
+const CELL_BYTES: u64 = (SETS * DIRECTIONS * (3 * 16 + 4 + 8)) as u64 + 640;
+/// Bytes of what two kinds of hair show between directions.
+const LATTICE_BYTES: u64 = (2 * SETS * TANGENTS * DIRECTIONS * DIRECTIONS * 16) as u64;
 
 /// Everything of a drawn groom that takes memory.
 #[derive(Clone, Copy, Debug)]
@@ -72,6 +77,7 @@ impl DrawnGroom<'_> {
         let (cells, known) = if scatters { (GRID_CELLS, shadows) } else { (0, 0) };
         vec![
             Need::new("scattered light (look.fibre.model = \"chiang\")", cells, CELL_BYTES),
+            Need::new("scattering between directions", u64::from(scatters), LATTICE_BYTES),
             Need::new("light that reaches points", self.points(level), 4 * known),
             Need::new(drawn, self.points(level), POINT_BYTES),
             Need::new("curves", (self.guide_count as u64).saturating_mul(curve_points), CURVE_BYTES),

@@ -13,7 +13,7 @@ use strandline_base::par::prelude::*;
 
 use super::inclination::{Inclination, REGION, offsets};
 use super::ways::{DIRECTIONS, Rays, SETS, Set, TANGENTS, directions, tangent};
-use crate::fibre::chiang::{Around, EyeRow, Lobes, MOMENTS, Met, Pigments, Table, terms_along};
+use crate::fibre::chiang::{EyeRow, Lobes, MOMENTS, Met, PigmentTerms, Pigments, Table, terms_along};
 use crate::light_field;
 
 /// Least by which albedos of two kinds of hair differ, for a third to lie between them.
@@ -51,7 +51,7 @@ type Shown = [Rays; DIRECTIONS];
 struct End {
     /// Its view at some inclination.
     seen: EyeRow,
-    around: Around,
+    around: PigmentTerms,
     /// Radiance that it sends along a direction of the next set, of light along one of a set: shape
     /// `[set][tangent][arriving][shown]`. Found when a cell asks for it: hair lies along few of the tangents.
     shown: [Vec<OnceLock<Box<Shown>>>; SETS],
@@ -341,7 +341,13 @@ fn product(weights: &Shown, light: &Rays) -> Rays {
 
 /// Radiance of each kind of path toward the eye, in whose direction `u` is a unit vector across the hair.
 #[inline]
-fn paths_of(table: &Table, terms: (&[Vec4], &Around), u: Vec3, seen: &EyeRow, light: &Arriving) -> [Vec3; 3] {
+fn paths_of(
+    table: &Table,
+    terms: (&[Vec4], &PigmentTerms),
+    u: Vec3,
+    seen: &EyeRow,
+    light: &Arriving,
+) -> [Vec3; 3] {
     let turn = (u.dot(light.to_light) / light.flat).clamp(-1.0, 1.0);
     table.by_path_around(terms, seen, &light.met, turn)
 }

@@ -2,8 +2,9 @@
 //!
 //! A pixel follows a quarter of the rays to a place of a light, and each of four pixels beside each other another one
 //! [Keller2001]. It shows the mean of the nine pixels about it by a tent filter (1 2 1 along both axes), in which all
-//! quarters have the same weight: a quarter of the work, and shadows that are softer by a pixel. A pixel at an outline or
-//! almost alone between hairs follows all rays.
+//! quarters have the same weight: a quarter of the work, and shadows that are softer by a pixel. Rays to a place whose
+//! number is no multiple of 16 are followed by each pixel. A pixel at an outline or almost alone between hairs follows all
+//! rays.
 
 use glam::Vec4;
 
@@ -29,8 +30,11 @@ pub(super) struct LightShares<'a> {
     places: Vec<Option<Option<(SkinPoint, f32)>>>,
     /// Shares found by a quarter of the rays, shape `[light][row][column]`; NaN where nobody asked for them.
     quarters: Vec<f32>,
-    /// The pixel that was looked at last, where the nine about it share rays.
-    at: Option<usize>,
+    /// The pixel that is looked at, and one over its view depth \[1/m\].
+    middle: usize,
+    depth: f32,
+    /// True if the nine pixels about it share rays; `None` as long as nobody asked.
+    is_shared: Option<bool>,
 }
 
 impl<'a> LightShares<'a> {
@@ -49,28 +53,46 @@ impl<'a> LightShares<'a> {
             !is_inner || (0..pixels.side * pixels.side).any(|sample| is_open(sample, [column - 1, row - 1]))
         });
         let shown = shown.collect();
-        let places = vec![None; side * side];
-        Self { pixels, side, shown, places, quarters: Vec::new(), at: None }
+        Self {
+            pixels,
+            side,
+            shown,
+            places: Vec::new(),
+            quarters: Vec::new(),
+            middle: 0,
+            depth: 0.0,
+            is_shared: None,
+        }
     }
 
     /// Turns to a pixel of the tile, at a column and a row, where it shows the body at one over a view depth \[1/m\].
     pub fn look(&mut self, [column, row]: [usize; 2], depth: f32) {
-        let middle = (row + 1) * self.side + column + 1;
-        let side = self.side;
-        let about = || about(side, middle).map(|(index, _)| index);
-        let is_shared = about().filter(|&index| self.shown[index]).count() >= LEAST
-            && about().all(|index| self.place(index).is_some_and(|(_, other)| is_near(other, depth)));
-        self.at = is_shared.then_some(middle);
+        (self.middle, self.depth, self.is_shared) = ((row + 1) * self.side + column + 1, depth, None);
     }
 
     /// Share of a light that reaches the body in the pixel, of which a place is given. `light` numbers the places of all
     /// lights, `places` are the place's number among those of its light and their number.
     pub fn share(&mut self, map: &ShadowMap, light: usize, places: [usize; 2], place: &SkinPoint) -> f32 {
-        let shared: Option<f32> = self.at.and_then(|middle| {
-            let nine = about(self.side, middle);
-            nine.map(|(index, weight)| Some(weight * self.quarter(index, map, light, places)?)).sum()
-        });
+        let shared: Option<f32> = (map.parts_rays(places[1]) && self.is_shared())
+            .then(|| {
+                let nine = about(self.side, self.middle);
+                nine.map(|(index, weight)| Some(weight * self.quarter(index, map, light, places)?)).sum()
+            })
+            .flatten();
         shared.unwrap_or_else(|| map.on_skin(place.point, place.normal, places))
+    }
+
+    /// True if the nine pixels about the one that is looked at share rays.
+    fn is_shared(&mut self) -> bool {
+        if let Some(known) = self.is_shared {
+            return known;
+        }
+        self.places.resize(self.side * self.side, None);
+        let (side, middle, depth) = (self.side, self.middle, self.depth);
+        let about = || about(side, middle).map(|(index, _)| index);
+        let is_shared = about().filter(|&index| self.shown[index]).count() >= LEAST
+            && about().all(|index| self.place(index).is_some_and(|(_, other)| is_near(other, depth)));
+        *self.is_shared.insert(is_shared)
     }
 
     /// Share by a quarter of the rays from a pixel; `None` if these cannot be parted.
@@ -176,7 +198,8 @@ mod tests {
             let off = shared.iter().zip(&all).map(|(shared, all)| (shared - all).abs() / most);
             let (sum, worst) = off.fold((0.0, 0.0_f32), |(sum, worst), off| (sum + off, worst.max(off)));
             let mean = sum / all.len() as f32;
-            assert!(shared != all && mean < 1e-3 && worst < 0.05, "{supersampling}: {mean} {worst}");
+            // Sharing rays makes the sharpest edge softer.
+            assert!(mean < 1e-3 && (0.015..0.05).contains(&worst), "{supersampling}: {mean} {worst}");
         }
     }
 }

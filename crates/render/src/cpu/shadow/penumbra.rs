@@ -225,6 +225,11 @@ impl ShadowMap {
         })
     }
 
+    /// True if the rays to each of so many places of a light can be parted among pixels.
+    pub(crate) fn parts_rays(&self, places: usize) -> bool {
+        self.view.part != [Vec2::ZERO; 2] && self.settings.rays_of(places).is_multiple_of(QUARTERS * LANES)
+    }
+
     /// As [`ShadowMap::on_skin`], by one of [`QUARTERS`] of the rays, if they can be parted so: pixels beside each other
     /// follow one each, and their mean is that of all rays.
     pub(crate) fn quarter_on_skin(
@@ -234,10 +239,10 @@ impl ShadowMap {
         places: [usize; 2],
         quarter: usize,
     ) -> Option<f32> {
-        let rays = self.settings.rays_of(places[1]);
-        if self.view.part == [Vec2::ZERO; 2] || !rays.is_multiple_of(QUARTERS * LANES) {
+        if !self.parts_rays(places[1]) {
             return None;
         }
+        let rays = self.settings.rays_of(places[1]);
         let count = rays / QUARTERS;
         Some(self.along(point, normal, |shares| {
             let group = |number: usize| Rays::new((QUARTERS * number + quarter) * LANES, rays, places);

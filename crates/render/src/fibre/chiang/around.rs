@@ -6,14 +6,14 @@ use super::table::{AROUND, EYES, EyeRow, Met, TURNS, Table, channels, paths};
 
 /// Terms around a fibre of one pigment: those of a table, with nothing between its levels left to be found.
 #[derive(Clone, Debug)]
-pub(crate) struct Around {
+pub(crate) struct PigmentTerms {
     /// Two for each `[eye][turn]`.
     entries: Vec<Vec4>,
 }
 
 impl Table {
     /// The terms around the fibre of the pigment of a point.
-    pub(crate) fn around_of(&self, seen: &EyeRow) -> Around {
+    pub(crate) fn around_of(&self, seen: &EyeRow) -> PigmentTerms {
         let entry = |at: usize| {
             let of_level = |level: usize| self.entries[AROUND + 2 * level * EYES * TURNS + at];
             let found =
@@ -21,14 +21,14 @@ impl Table {
             let [mixed] = channels(found.map(|found| [found]), [found[0].w]);
             mixed
         };
-        Around { entries: (0..2 * EYES * TURNS).map(entry).collect() }
+        PigmentTerms { entries: (0..2 * EYES * TURNS).map(entry).collect() }
     }
 
     /// [`Table::by_path_along`] for a point of that pigment.
     #[inline]
     pub(crate) fn by_path_around(
         &self,
-        (terms, around): (&[Vec4], &Around),
+        (terms, around): (&[Vec4], &PigmentTerms),
         seen: &EyeRow,
         met: &Met,
         turn: f32,
@@ -38,7 +38,7 @@ impl Table {
     }
 }
 
-impl Around {
+impl PigmentTerms {
     /// The terms between nodes of the eye's inclination and the turn.
     #[inline]
     fn at(&self, (row, down): (usize, f32), (column, across): (usize, f32)) -> [Vec4; 2] {

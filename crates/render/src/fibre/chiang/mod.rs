@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3};
 use strandline_base::math;
 use strandline_base::{choices, settings};
 
-pub(crate) use around::Around;
+pub(crate) use around::PigmentTerms;
 pub use lobes::{LOBES, Lobes};
 pub use moments::MOMENTS;
 pub(crate) use table::terms_along;
