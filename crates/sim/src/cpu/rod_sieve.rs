@@ -204,21 +204,18 @@ mod tests {
 
     #[test]
     fn bits_are_those_of_any_processor() {
-        let Some(avx) = avx::Avx::new() else { return };
         const BLOCKS: usize = 40;
+        let Some(avx) = avx::Avx::new() else { return };
         let mut random = Random::new(11, 0);
         let mut vector =
             |size: f32| Vec3::new(random.unit() - 0.5, random.unit() - 0.5, random.unit() - 0.5) * size;
         let mut points = [Point::default(); 2 * BLOCKS * LANES];
-        for (index, point) in points.iter_mut().enumerate() {
+        for point in &mut points {
             *point = Point { start: vector(0.02), coast: vector(0.004) };
-            // A segment of no length, and one that is no number.
-            if index == 9 * LANES {
-                point.coast = Vec3::splat(f32::NAN);
-            }
         }
+        // A way that is no number, a segment of no length, and one that is parallel to the first.
+        points[9 * LANES].coast = Vec3::splat(f32::NAN);
         points[1 + LANES] = points[1];
-        // Parallel to the first.
         points[2 + LANES].start = points[2].start + (points[LANES].start - points[0].start);
         let segments: Vec<u32> =
             (0..(BLOCKS * LANES) as u32).map(|segment| segment + segment / 8 * 8).collect();
