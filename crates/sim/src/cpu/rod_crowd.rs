@@ -87,11 +87,11 @@ impl Crowd {
 
     /// Gives each block its pairs, in their order.
     fn share_out(&mut self) {
-        self.rooms.iter_mut().for_each(|room| room.touches.clear());
+        self.rooms.iter_mut().for_each(Room::part_from_all);
         let lanes = self.points * LANES;
         for (index, near) in self.near.iter().enumerate() {
             for side in 0..2 {
-                self.rooms[near.segments[side] as usize / lanes].touches.push([index as u32, side as u32]);
+                self.rooms[near.segments[side] as usize / lanes].meet(index, near, side);
             }
         }
     }

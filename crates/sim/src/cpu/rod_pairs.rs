@@ -162,7 +162,7 @@ mod tests {
                     wider: &[0.0; 2],
                     moving,
                 };
-                sieve.may_meet(&sieve.one(0), &sieve.eight([1; LANES]), 1) != 0
+                sieve.may_meet(&sieve.one(&sieve.eight([0; LANES]), 0), &sieve.eight([1; LANES]), 1) != 0
             };
             let shares = nearest(&start);
             left_out += usize::from(!meets(true));

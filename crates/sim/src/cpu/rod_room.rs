@@ -13,23 +13,32 @@ use crate::strands::rods::rounds::Push;
 use crate::strands::rods::workspace::Workspace;
 use crate::wisps::pair::Near;
 
+/// A pair of a block: its index in the list, which of both segments is the block's own, and the point, the lane and the share
+/// of its place there.
+#[derive(Clone, Copy)]
+struct Touch {
+    pair: u32,
+    side: u32,
+    point: u32,
+    lane: u32,
+    share: f32,
+}
+
 /// One block of strands among others.
 #[derive(Clone)]
 pub(super) struct Room {
     pub(super) space: Workspace,
     settings: StepSettings<f32x8>,
     pub(super) pinned: Vec<Pinned>,
-    /// Pairs of the block: index in the list, and which of both segments is its own.
-    pub(super) touches: Vec<[u32; 2]>,
+    /// Pairs of the block.
+    touches: Vec<Touch>,
     /// Stiffness \[N/m\] that holds each point, and by which it holds the next; shape `[point]` of lanes.
     own: Vec<Lanes>,
     next: Vec<Lanes>,
-    /// Forces \[N\], steps and the sum of the steps of rounds \[m, rad\], shape `[point]`.
+    /// Forces \[N\] and steps \[m\], shape `[point]`.
     forces: Vec<Vec3Lanes>,
-    pushed: Vec<Vector<f32x8>>,
     pushes: Vec<Push<f32x8>>,
     steps: Vec<Vector<f32x8>>,
-    sums: Vec<[f32x8; 4]>,
     /// Above 0: strands that have pairs, that are not solved, and whose last Newton step was whole.
     meets: f32x8,
     open: f32x8,
@@ -50,10 +59,8 @@ impl Room {
             own: vec![Lanes::default(); points],
             next: vec![Lanes::default(); points],
             forces: vec![Vec3Lanes::default(); points],
-            pushed: vec![zero; points],
             pushes: vec![Push::zero(); points],
             steps: vec![zero; points],
-            sums: vec![[f32x8::ZERO; 4]; points],
             meets: f32x8::ZERO,
             open: f32x8::ZERO,
             whole: f32x8::ZERO,
@@ -64,6 +71,23 @@ impl Room {
 }
 
 impl Room {
+    /// Forgets the pairs.
+    pub(super) fn part_from_all(&mut self) {
+        self.touches.clear();
+    }
+
+    /// Takes note of a pair by its index in the list, with a side whose segment is the block's.
+    pub(super) fn meet(&mut self, pair: usize, near: &Near, side: usize) {
+        let segment = near.segments[side] as usize;
+        self.touches.push(Touch {
+            pair: pair as u32,
+            side: side as u32,
+            point: (segment / LANES % self.own.len()) as u32,
+            lane: (segment % LANES) as u32,
+            share: near.shares[side],
+        });
+    }
+
     pub(super) fn begin(
         &mut self,
         hair: &Hair,
@@ -90,38 +114,28 @@ impl Room {
         if !self.touches.is_empty() {
             self.own.fill(Lanes::default());
             self.next.fill(Lanes::default());
-            for &[index, side] in &self.touches {
-                let (near, side) = (&near[index as usize], side as usize);
-                let (point, lane) = self.place(near, side);
-                let (stiffness, share) = (near.holds[side], near.shares[side]);
+            for touch in &self.touches {
+                let (point, lane, share) = (touch.point as usize, touch.lane as usize, touch.share);
+                let stiffness = near[touch.pair as usize].holds[touch.side as usize];
                 self.own[point].0[lane] += stiffness * (1.0 - share) * (1.0 - share);
                 self.own[point + 1].0[lane] += stiffness * share * share;
                 self.next[point].0[lane] += stiffness * share * (1.0 - share);
                 meets[lane] = 1.0;
             }
             self.space.prepare(hair.strands(block).nodes, self.settings.viscous);
-            self.sums.fill([f32x8::ZERO; 4]);
             self.give_ways(ways);
         }
         self.meets = f32x8::from(meets);
         self.space.forget_tensions(self.meets);
     }
 
-    /// Point and lane of a pair's segment in this block.
-    #[inline]
-    fn place(&self, near: &Near, side: usize) -> (usize, usize) {
-        let segment = near.segments[side] as usize;
-        (segment / LANES % self.own.len(), segment % LANES)
-    }
-
     /// Sums a force of each pair at the points.
     fn gather(&mut self, near: &[Near], force: fn(&Near) -> Vec3) {
         self.forces.fill(Vec3Lanes::default());
-        for &[index, side] in &self.touches {
-            let (near, side) = (&near[index as usize], side as usize);
-            let (point, lane) = self.place(near, side);
-            let force = if side == 0 { force(near) } else { -force(near) };
-            let share = near.shares[side];
+        for touch in &self.touches {
+            let (point, lane, share) = (touch.point as usize, touch.lane as usize, touch.share);
+            let force = force(&near[touch.pair as usize]);
+            let force = if touch.side == 0 { force } else { -force };
             for (point, share) in [(point, 1.0 - share), (point + 1, share)] {
                 let sum = &mut self.forces[point];
                 sum.set(lane, sum.get(lane) + force * share);
@@ -129,18 +143,19 @@ impl Room {
         }
     }
 
-    /// Forces with which steps are held.
-    fn add_held(&mut self) {
+    /// What a Newton step gets of the forces and of what holds the steps.
+    fn find_pushes(&mut self) {
         let last = self.steps.len() - 1;
         for point in 0..=last {
-            let mut held = self.steps[point] * f32x8::new(self.own[point].0);
+            let (own, next) = (f32x8::new(self.own[point].0), f32x8::new(self.next[point].0));
+            let mut held = self.steps[point] * own;
             if point < last {
-                held += self.steps[point + 1] * f32x8::new(self.next[point].0);
+                held += self.steps[point + 1] * next;
             }
             if point > 0 {
                 held += self.steps[point - 1] * f32x8::new(self.next[point - 1].0);
             }
-            self.pushed[point] = Vector::load(&self.forces[point]) + held;
+            self.pushes[point] = Push { force: Vector::load(&self.forces[point]) + held, own, next };
         }
     }
 
@@ -167,23 +182,16 @@ impl Room {
             };
             *step = Vector::choose(self.meets, from, Vector::zero());
         }
-        self.add_held();
-        for (point, push) in self.pushes.iter_mut().enumerate() {
-            let (own, next) = (f32x8::new(self.own[point].0), f32x8::new(self.next[point].0));
-            *push = Push { force: self.pushed[point], own, next };
-        }
+        self.find_pushes();
         let first = newton == 0;
         let open = [self.open, self.meets];
         let turned = self.space.push(strands.nodes, &self.pushes, &self.settings, first, open);
-        for (point, step) in self.steps.iter_mut().enumerate() {
-            let [x, y, z, _] = self.space.work.step[point];
-            *step = Vector::new(x, y, z);
-        }
         self.give_ways(ways);
         if first {
             for (point, step) in self.steps.iter_mut().enumerate() {
                 *step = Vector::load(&ways[point]) - Vector::load(&coast[point]);
             }
+            self.space.set_held(&self.steps);
         }
         self.pressed = self.open.choose(turned.pressed, self.pressed);
         self.turn = self.open.choose(turned.turn, self.turn);
@@ -200,20 +208,7 @@ impl Room {
             return;
         }
         self.gather(near, |near| near.change);
-        self.add_held();
-        for force in &mut self.pushed {
-            *force = Vector::choose(self.whole, *force, Vector::zero());
-        }
-        self.space.answer(hair.strands(block).nodes, &self.pushed);
-        for (point, way) in ways.iter_mut().enumerate() {
-            let step = self.space.work.step[point];
-            let [x, y, z, _] = step;
-            self.steps[point] = Vector::new(x, y, z);
-            for (sum, step) in self.sums[point].iter_mut().zip(step) {
-                *sum += step;
-            }
-            (Vector::load(way) + self.steps[point]).store(way);
-        }
+        self.space.round(hair.nodes(block), (&self.pushes, &self.forces), self.whole, ways);
     }
 
     /// Takes the steps of the rounds.
@@ -221,9 +216,7 @@ impl Room {
         if self.touches.is_empty() {
             return;
         }
-        self.space.work.step.copy_from_slice(&self.sums);
         self.space.settle(self.whole);
-        self.sums.fill([f32x8::ZERO; 4]);
     }
 
     fn give_ways(&self, ways: &mut [Vec3Lanes]) {
@@ -239,10 +232,10 @@ impl Room {
         let solved = if self.touches.is_empty() {
             self.space.solve(strands.nodes, &self.settings)
         } else {
+            self.space.give();
             let mut pressed = self.pressed.to_array();
-            for &[index, side] in &self.touches {
-                let near = &near[index as usize];
-                let lane = self.place(near, side as usize).1;
+            for touch in &self.touches {
+                let (near, lane) = (&near[touch.pair as usize], touch.lane as usize);
                 pressed[lane] = pressed[lane].max(near.normal.dot(near.force));
             }
             self.space.work.step.fill([f32x8::ZERO; 4]);

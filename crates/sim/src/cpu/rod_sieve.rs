@@ -6,8 +6,14 @@ use wide::f32x8;
 
 use super::rod_pairs::Point;
 use crate::strands::rods::real::Vector;
-use crate::wisps::boxes::Sieve;
+use crate::wisps::boxes::{Hit, Row, Sieve};
 use crate::wisps::place::NEAR;
+
+#[cfg(target_arch = "x86_64")]
+mod avx;
+#[cfg(not(target_arch = "x86_64"))]
+#[path = "rod_sieve/no_avx.rs"]
+mod avx;
 
 /// Distance \[m\] that is rounding.
 pub(super) const ROUNDING: f32 = 1e-5;
@@ -28,7 +34,26 @@ pub(super) struct Across<'a> {
     pub(super) moving: bool,
 }
 
-/// A segment against which others are tested.
+impl Across<'_> {
+    /// As [`Sieve::scan`], on any processor.
+    fn scan_plain(&self, row: &Row<Eight>, hits: &mut Vec<Hit>) {
+        let (eight, lane) = row.own();
+        let one = self.one(eight, lane);
+        row.scan(|eight, lanes| self.may_meet(&one, eight, lanes), hits);
+    }
+}
+
+/// A segment against which others are tested: where it begins and its direction, the ways of its ends, vectors across it with
+/// the least and the most of these ways, and the distance \[m\] within which another without radius is near.
+struct Lone {
+    start: Vec3,
+    along: Vec3,
+    ways: [Vec3; 2],
+    sights: [(Vec3, f32, f32); 2],
+    reach: f32,
+}
+
+/// The same in each lane.
 pub(super) struct One {
     start: Vector<f32x8>,
     along: Vector<f32x8>,
@@ -61,6 +86,24 @@ impl Sight {
     }
 }
 
+impl Eight {
+    /// One of them, against which others are tested.
+    #[inline]
+    fn lone(&self, lane: usize) -> Lone {
+        let of = |vector: &Vector<f32x8>| {
+            Vec3::from([&vector.x, &vector.y, &vector.z].map(|numbers| numbers.as_array()[lane]))
+        };
+        let ([start, end], ways) = (self.ends.each_ref().map(of), self.ways.each_ref().map(of));
+        let along = (end - start).normalize_or(Vec3::X);
+        let across = along.any_orthonormal_vector();
+        let sights = [across, along.cross(across)].map(|direction| {
+            let (one, other) = (direction.dot(ways[0]), direction.dot(ways[1]));
+            (direction, one.min(other), one.max(other))
+        });
+        Lone { start, along, ways, sights, reach: self.reach.as_array()[lane] }
+    }
+}
+
 impl Across<'_> {
     fn radius(&self, segment: u32) -> f32 {
         self.radii[segment as usize / LANES].0[segment as usize % LANES]
@@ -85,15 +128,15 @@ impl Sieve for Across<'_> {
     type One = One;
     type Eight = Eight;
 
-    fn one(&self, segment: u32) -> One {
-        let [lower, upper] = self.ends(segment);
-        let along = (upper.start - lower.start).normalize_or(Vec3::X);
-        let across = along.any_orthonormal_vector();
-        let ways = [lower, upper].map(|end| Vector::splat(end.coast));
-        let sights =
-            [across, along.cross(across)].map(|direction| Sight::new(Vector::splat(direction), &ways));
-        let (start, along) = (Vector::splat(lower.start), Vector::splat(along));
-        One { start, along, ways, sights, reach: f32x8::splat(self.reach(segment)) }
+    fn one(&self, eight: &Eight, lane: usize) -> One {
+        let Lone { start, along, ways, sights, reach } = eight.lone(lane);
+        let sights = sights.map(|(direction, least, most)| Sight {
+            direction: Vector::splat(direction),
+            least: f32x8::splat(least),
+            most: f32x8::splat(most),
+        });
+        let (start, along) = (Vector::splat(start), Vector::splat(along));
+        One { start, along, ways: ways.map(Vector::splat), sights, reach: f32x8::splat(reach) }
     }
 
     fn eight(&self, segments: [u32; LANES]) -> Eight {
@@ -140,7 +183,67 @@ impl Sieve for Across<'_> {
         lanes & (parallel | seen(&Sight::new(across, &one.ways), reach * square.sqrt()))
     }
 
+    fn scan(&self, row: &Row<Eight>, hits: &mut Vec<Hit>) {
+        match avx::Avx::new() {
+            Some(avx) => avx.scan(row, self.moving, hits),
+            None => self.scan_plain(row, hits),
+        }
+    }
+
     fn judge(&self, [one, other]: [u32; 2]) -> Option<f32> {
         (self.is_free(one) || self.is_free(other)).then_some(f32::NEG_INFINITY)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use strandline_body::Random;
+
+    use super::*;
+    use crate::wisps::boxes::Corners;
+
+    #[test]
+    fn bits_are_those_of_any_processor() {
+        const BLOCKS: usize = 40;
+        let Some(avx) = avx::Avx::new() else { return };
+        let mut random = Random::new(11, 0);
+        let mut vector =
+            |size: f32| Vec3::new(random.unit() - 0.5, random.unit() - 0.5, random.unit() - 0.5) * size;
+        let mut points = [Point::default(); 2 * BLOCKS * LANES];
+        for point in &mut points {
+            *point = Point { start: vector(0.02), coast: vector(0.004) };
+        }
+        // A way that is no number, a segment of no length, and one that is parallel to the first.
+        points[9 * LANES].coast = Vec3::splat(f32::NAN);
+        points[1 + LANES] = points[1];
+        points[2 + LANES].start = points[2].start + (points[LANES].start - points[0].start);
+        let segments: Vec<u32> =
+            (0..(BLOCKS * LANES) as u32).map(|segment| segment + segment / 8 * 8).collect();
+        let radii = [Lanes([3e-4; LANES]); 2 * BLOCKS];
+        let wider = [1e-4; 2 * BLOCKS * LANES];
+        let mut counts = [0; 2];
+        for moving in [false, true] {
+            let sieve = Across { radii: &radii, inverse_mass: &[], points: &points, wider: &wider, moving };
+            let eights: Vec<Eight> = segments
+                .chunks_exact(LANES)
+                .map(|eight| sieve.eight(std::array::from_fn(|lane| eight[lane])))
+                .collect();
+            let corners: Vec<Corners> = (0..BLOCKS)
+                .map(|_| {
+                    let low = vector(0.02).to_array().map(f32x8::splat);
+                    Corners { low, high: low.map(|low| low + f32x8::splat(0.01)) }
+                })
+                .collect();
+            for (entry, segment) in segments.iter().enumerate() {
+                let end = segments.len() - entry % 11;
+                let row = Row { entry, end: end.max(entry + 1), corners: &corners, eights: &eights };
+                let (mut plain, mut fast) = (Vec::new(), Vec::new());
+                sieve.scan_plain(&row, &mut plain);
+                avx.scan(&row, moving, &mut fast);
+                assert_eq!(plain, fast, "{segment}");
+                counts[usize::from(moving)] += plain.len();
+            }
+        }
+        assert!(counts[0] > 100 && counts[1] > counts[0], "{counts:?}");
     }
 }

@@ -34,6 +34,11 @@ pub(super) struct Hair<'a> {
 }
 
 impl<'a> Hair<'a> {
+    /// Nodes of a block.
+    pub(super) fn nodes(&self, block: usize) -> &'a [Node<f32x8>] {
+        &self.nodes[block * self.model.points_per_strand..(block + 1) * self.model.points_per_strand]
+    }
+
     /// A block of them.
     pub(super) fn strands(&self, block: usize) -> Strands<'a> {
         let (model, parts) = (self.model, self.parts);
@@ -42,7 +47,7 @@ impl<'a> Hair<'a> {
         Strands {
             model,
             parts,
-            nodes: &self.nodes[range.clone()],
+            nodes: self.nodes(block),
             lengths: &self.lengths.stretch[range.clone()],
             inverse_mass: &self.masses.inverse_mass[range.clone()],
             rest: &model.positions[range.clone()],

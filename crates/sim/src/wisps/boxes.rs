@@ -1,5 +1,7 @@
 //! Pairs of segments whose boxes meet: boxes in strips, swept along an axis, eight at a time.
 
+use std::ops::Range;
+
 use strandline_base::par::prelude::*;
 use strandline_groom::LANES;
 use wide::f32x8;
@@ -29,12 +31,19 @@ pub trait Sieve: Sync {
     /// Numbers of eight segments, one in each lane.
     type Eight: Send + Sync;
 
-    fn one(&self, segment: u32) -> Self::One;
+    fn one(&self, eight: &Self::Eight, lane: usize) -> Self::One;
 
     fn eight(&self, segments: [u32; LANES]) -> Self::Eight;
 
     /// Bits of those of the segments in some lanes that may be near the one.
     fn may_meet(&self, one: &Self::One, eight: &Self::Eight, lanes: u32) -> u32;
+
+    /// Adds the groups of a row in which boxes meet and segments may be near its own, in the fastest way here.
+    fn scan(&self, row: &Row<Self::Eight>, hits: &mut Vec<Hit>) {
+        let (eight, lane) = row.own();
+        let one = self.one(eight, lane);
+        row.scan(|eight, lanes| self.may_meet(&one, eight, lanes), hits);
+    }
 
     /// Distance \[m\] of two segments, the lower number first; none for those that are no pair.
     fn judge(&self, segments: [u32; 2]) -> Option<f32>;
@@ -42,9 +51,71 @@ pub trait Sieve: Sync {
 
 /// Corners of eight boxes \[m\], by the axes of the layout.
 #[derive(Clone, Copy, Debug)]
-struct Corners {
-    low: [f32x8; 3],
-    high: [f32x8; 3],
+pub struct Corners {
+    pub low: [f32x8; 3],
+    pub high: [f32x8; 3],
+}
+
+/// An entry and those behind it in its strip.
+pub struct Row<'a, E> {
+    pub entry: usize,
+    /// The one behind the last of these.
+    pub end: usize,
+    /// Of all entries, in groups of eight.
+    pub corners: &'a [Corners],
+    pub eights: &'a [E],
+}
+
+/// A group of eight entries, and the bits of those that are found.
+#[derive(Debug, PartialEq)]
+pub struct Hit {
+    pub group: usize,
+    pub lanes: u32,
+}
+
+impl<E> Row<'_, E> {
+    /// Groups in which it has entries.
+    #[inline]
+    pub fn groups(&self) -> Range<usize> {
+        (self.entry + 1) / LANES..self.end.div_ceil(LANES)
+    }
+
+    /// Group and lane of its own entry.
+    #[inline]
+    pub fn own(&self) -> (&E, usize) {
+        (&self.eights[self.entry / LANES], self.entry % LANES)
+    }
+
+    /// Corners of its own box \[m\].
+    #[inline]
+    pub fn corners(&self) -> [[f32; 3]; 2] {
+        let (own, lane) = (&self.corners[self.entry / LANES], self.entry % LANES);
+        [&own.low, &own.high].map(|corner| corner.each_ref().map(|axis| axis.as_array()[lane]))
+    }
+
+    /// Bits of its entries in one of them.
+    #[inline]
+    pub fn lanes(&self, group: usize) -> u32 {
+        let begin = group * LANES;
+        let (before, behind) =
+            ((self.entry + 1).saturating_sub(begin), (begin + LANES).saturating_sub(self.end));
+        (ALL << before) & (ALL >> behind)
+    }
+
+    /// Adds the groups of entries whose boxes meet and that `may_meet` leaves.
+    #[inline]
+    pub fn scan(&self, may_meet: impl Fn(&E, u32) -> u32, hits: &mut Vec<Hit>) {
+        let [low, high] = self.corners().map(|corner| corner.map(f32x8::splat));
+        for group in self.groups() {
+            let mut lanes = self.lanes(group) & self.corners[group].meet(&low, &high);
+            if lanes != 0 {
+                lanes = may_meet(&self.eights[group], lanes);
+            }
+            if lanes != 0 {
+                hits.push(Hit { group, lanes });
+            }
+        }
+    }
 }
 
 /// Scratch of the search, kept.
@@ -96,8 +167,9 @@ impl Boxes {
         let search = Search { boxes, sorted: self, layout, sieve, eights };
         found.par_iter_mut().enumerate().for_each(|(chunk, found)| {
             found.clear();
+            let mut hits = Vec::new();
             for entry in chunk * CHUNK..((chunk + 1) * CHUNK).min(search.sorted.order.len()) {
-                search.partners(entry, found);
+                search.partners(entry, &mut hits, found);
             }
         });
         found.iter().for_each(|found| pairs.extend_from_slice(found));
@@ -123,28 +195,18 @@ impl Corners {
 
 impl<S: Sieve> Search<'_, S> {
     /// Finds the pairs of an entry with those behind it in its strip.
-    fn partners(&self, entry: usize, found: &mut Vec<Met>) {
+    fn partners(&self, entry: usize, hits: &mut Vec<Hit>, found: &mut Vec<Met>) {
         let [index, strip] = self.sorted.order[entry];
-        let (own, place) = (&self.boxes[index as usize], &self.sorted.places[index as usize]);
+        let place = &self.sorted.places[index as usize];
         let end = self.sorted.starts[self.layout.bucket(strip, place.last_bin) + 1] as usize;
-        let from = entry + 1;
-        if from >= end {
+        if entry + 1 >= end {
             return;
         }
-        let one = self.sieve.one(own.segment);
-        let low = self.layout.axes.map(|axis| f32x8::splat(own.low[axis]));
-        let high = self.layout.axes.map(|axis| f32x8::splat(own.high[axis]));
-        for group in from / LANES..end.div_ceil(LANES) {
-            let begin = group * LANES;
-            // Entries from `from` to `end`.
-            let (before, behind) = (from.saturating_sub(begin), (begin + LANES).saturating_sub(end));
-            let mut lanes = (ALL << before) & (ALL >> behind);
-            lanes &= self.sorted.corners[group].meet(&low, &high);
-            if lanes != 0 {
-                lanes = self.sieve.may_meet(&one, &self.eights[group], lanes);
-            }
+        let row = Row { entry, end, corners: &self.sorted.corners, eights: self.eights };
+        self.sieve.scan(&row, hits);
+        for Hit { group, mut lanes } in hits.drain(..) {
             while lanes != 0 {
-                self.judge(index, strip, begin + lanes.trailing_zeros() as usize, found);
+                self.judge(index, strip, group * LANES + lanes.trailing_zeros() as usize, found);
                 lanes &= lanes - 1;
             }
         }
@@ -189,7 +251,7 @@ mod tests {
         type One = ();
         type Eight = ();
 
-        fn one(&self, _: u32) {}
+        fn one(&self, (): &(), _: usize) {}
 
         fn eight(&self, _: [u32; LANES]) {}
 

@@ -75,7 +75,7 @@ impl Sieve for AtRest<'_> {
     type One = ();
     type Eight = ();
 
-    fn one(&self, _: u32) {}
+    fn one(&self, (): &(), _: usize) {}
 
     fn eight(&self, _: [u32; LANES]) {}
 

@@ -51,7 +51,7 @@ impl<R: Real> Work<R> {
                 self.add_stretch(&mut front, 0, node);
             }
             let free = [node.free, node.free, node.free, node.free_angle];
-            sound = sound * front.eliminate(&mut self.factors[index], free);
+            sound = sound * front.eliminate(&mut self.factors[index], &mut self.step[index], free);
         }
         (pressed, sound)
     }

@@ -72,37 +72,44 @@ fn sum<R: Real>(springs: &[Spring<R>; 3], term: impl Fn(&Spring<R>) -> R) -> R {
     term(&springs[0]) + term(&springs[1]) + term(&springs[2])
 }
 
+/// Position of a row and one of the first columns, row not above column, in what is kept of these columns.
+#[inline(always)]
+const fn kept(column: usize, row: usize) -> usize {
+    column * ROWS - column * (column + 1) / 2 + row
+}
+
 /// Result of the elimination of a node, for the back substitution.
 #[derive(Clone, Copy, Debug)]
 pub struct Factors<R> {
     /// Entries below the diagonal of each column, by row; on it 1 over the pivot, 0 of what stays.
-    below: [[R; ROWS]; UNKNOWNS],
-    solved: [R; UNKNOWNS],
+    below: [R; kept(UNKNOWNS - 1, ROWS - 1) + 1],
 }
 
 impl<R: Real> Factors<R> {
     /// No factors: unknowns that stay.
     #[inline(always)]
     pub fn zero() -> Self {
-        Self { below: [[R::of(0.0); ROWS]; UNKNOWNS], solved: [R::of(0.0); UNKNOWNS] }
+        Self { below: [R::of(0.0); kept(UNKNOWNS - 1, ROWS - 1) + 1] }
     }
 
-    /// Eliminates another right-hand side, whose rows below change.
+    /// Eliminates another right-hand side, whose rows below change. Returns what [`substitute`] begins with.
     #[inline(always)]
-    pub(super) fn solve(&mut self, right: &mut [R; ROWS]) {
-        self.solve_column::<0>(right);
-        self.solve_column::<1>(right);
-        self.solve_column::<2>(right);
-        self.solve_column::<3>(right);
+    pub(super) fn solve(&self, right: &mut [R; ROWS]) -> [R; UNKNOWNS] {
+        [
+            self.solve_column::<0>(right),
+            self.solve_column::<1>(right),
+            self.solve_column::<2>(right),
+            self.solve_column::<3>(right),
+        ]
     }
 
     #[inline(always)]
-    fn solve_column<const COLUMN: usize>(&mut self, right: &mut [R; ROWS]) {
+    fn solve_column<const COLUMN: usize>(&self, right: &mut [R; ROWS]) -> R {
         let own = right[COLUMN];
-        self.solved[COLUMN] = own * self.below[COLUMN][COLUMN];
         for row in COLUMN + 1..ROWS {
-            right[row] -= self.below[COLUMN][row] * own;
+            right[row] -= self.below[kept(COLUMN, row)] * own;
         }
+        own * self.below[kept(COLUMN, COLUMN)]
     }
 }
 
@@ -227,19 +234,24 @@ impl<R: Real> Front<R> {
         self.right[ROWS - UNKNOWNS..].fill(R::of(0.0));
     }
 
-    /// Eliminates the first four rows and moves the others up. `free` is 1 for unknowns that move and
-    /// 0 for those that stay. Returns 1 where the pivots of all free unknowns are positive, as those of a positive
+    /// Eliminates the first four rows and moves the others up; `solved` is what [`substitute`] begins with. `free` is 1 for
+    /// unknowns that move and 0 for those that stay. Returns 1 where the pivots of all free unknowns are positive, as those of a positive
     /// definite system, else 0; NaN is not positive.
     #[inline(always)]
-    pub fn eliminate(&mut self, factors: &mut Factors<R>, free: [R; UNKNOWNS]) -> R {
+    pub fn eliminate(
+        &mut self,
+        factors: &mut Factors<R>,
+        solved: &mut [R; UNKNOWNS],
+        free: [R; UNKNOWNS],
+    ) -> R {
         let mut whole = [[R::of(0.0); ROWS]; UNKNOWNS];
         let pivots = [
-            self.eliminate_column::<0>(factors, &mut whole, free[0]),
-            self.eliminate_column::<1>(factors, &mut whole, free[1]),
-            self.eliminate_column::<2>(factors, &mut whole, free[2]),
-            self.eliminate_column::<3>(factors, &mut whole, free[3]),
+            self.eliminate_column::<0>(factors, solved, &mut whole, free[0]),
+            self.eliminate_column::<1>(factors, solved, &mut whole, free[1]),
+            self.eliminate_column::<2>(factors, solved, &mut whole, free[2]),
+            self.eliminate_column::<3>(factors, solved, &mut whole, free[3]),
         ];
-        self.move_up(&factors.below, &whole);
+        self.move_up(factors, &whole);
         pivots.into_iter().fold(R::of(1.0), |sound, pivot| pivot.choose(sound, R::of(0.0)))
     }
 
@@ -247,25 +259,26 @@ impl<R: Real> Front<R> {
     fn eliminate_column<const COLUMN: usize>(
         &mut self,
         factors: &mut Factors<R>,
+        solved: &mut [R; UNKNOWNS],
         whole: &mut [[R; ROWS]; UNKNOWNS],
         free: R,
     ) -> R {
         let pivot = free.choose(self.entries[entry(COLUMN, COLUMN)], R::of(1.0));
         let inverse = free / pivot;
         let right = self.right[COLUMN];
-        factors.solved[COLUMN] = right * inverse;
-        factors.below[COLUMN][COLUMN] = inverse;
+        solved[COLUMN] = right * inverse;
+        factors.below[kept(COLUMN, COLUMN)] = inverse;
         for row in COLUMN + 1..ROWS {
             let value = self.entries[entry(row, COLUMN)];
             let scaled = value * inverse;
             whole[COLUMN][row] = value;
-            factors.below[COLUMN][row] = scaled;
+            factors.below[kept(COLUMN, row)] = scaled;
             self.right[row] -= scaled * right;
         }
         // Updates of the rows that are eliminated here; the rest follows below.
         for other in COLUMN + 1..UNKNOWNS {
             for row in other..ROWS {
-                self.entries[entry(row, other)] -= factors.below[COLUMN][row] * whole[COLUMN][other];
+                self.entries[entry(row, other)] -= factors.below[kept(COLUMN, row)] * whole[COLUMN][other];
             }
         }
         free.choose(pivot, R::of(1.0))
@@ -273,16 +286,18 @@ impl<R: Real> Front<R> {
 
     /// The remaining rows, four rows up.
     #[inline(always)]
-    fn move_up(&mut self, scaled: &[[R; ROWS]; UNKNOWNS], whole: &[[R; ROWS]; UNKNOWNS]) {
-        for_rows!(self.move_row(scaled, whole));
+    fn move_up(&mut self, factors: &Factors<R>, whole: &[[R; ROWS]; UNKNOWNS]) {
+        for_rows!(self.move_row(factors, whole));
     }
 
     #[inline(always)]
-    fn move_row<const ROW: usize>(&mut self, scaled: &[[R; ROWS]; UNKNOWNS], whole: &[[R; ROWS]; UNKNOWNS]) {
+    fn move_row<const ROW: usize>(&mut self, factors: &Factors<R>, whole: &[[R; ROWS]; UNKNOWNS]) {
         if ROW < UNKNOWNS {
             return;
         }
-        let [a, b, c, d] = [scaled[0][ROW], scaled[1][ROW], scaled[2][ROW], scaled[3][ROW]];
+        let scaled = &factors.below;
+        let (a, b) = (scaled[kept(0, ROW)], scaled[kept(1, ROW)]);
+        let (c, d) = (scaled[kept(2, ROW)], scaled[kept(3, ROW)]);
         for column in UNKNOWNS..=ROW {
             let taken =
                 a * whole[0][column] + b * whole[1][column] + c * whole[2][column] + d * whole[3][column];
@@ -292,7 +307,7 @@ impl<R: Real> Front<R> {
     }
 }
 
-/// Solves from tip to root: the unknowns of every node.
+/// Solves from tip to root: the unknowns of every node, in place of what elimination left.
 #[inline(always)]
 pub fn substitute<R: Real>(factors: &[Factors<R>], unknowns: &mut [[R; UNKNOWNS]]) {
     let mut known = [R::of(0.0); ROWS];
@@ -300,19 +315,19 @@ pub fn substitute<R: Real>(factors: &[Factors<R>], unknowns: &mut [[R; UNKNOWNS]
         for row in (UNKNOWNS..ROWS).rev() {
             known[row] = known[row - UNKNOWNS];
         }
-        known[3] = back::<R, 3>(factors, &known);
-        known[2] = back::<R, 2>(factors, &known);
-        known[1] = back::<R, 1>(factors, &known);
-        known[0] = back::<R, 0>(factors, &known);
+        known[3] = back::<R, 3>(factors, unknowns[3], &known);
+        known[2] = back::<R, 2>(factors, unknowns[2], &known);
+        known[1] = back::<R, 1>(factors, unknowns[1], &known);
+        known[0] = back::<R, 0>(factors, unknowns[0], &known);
         unknowns.copy_from_slice(&known[..UNKNOWNS]);
     }
 }
 
 #[inline(always)]
-fn back<R: Real, const COLUMN: usize>(factors: &Factors<R>, known: &[R; ROWS]) -> R {
-    let mut value = factors.solved[COLUMN];
+fn back<R: Real, const COLUMN: usize>(factors: &Factors<R>, solved: R, known: &[R; ROWS]) -> R {
+    let mut value = solved;
     for row in COLUMN + 1..ROWS {
-        value -= factors.below[COLUMN][row] * known[row];
+        value -= factors.below[kept(COLUMN, row)] * known[row];
     }
     value
 }
@@ -354,6 +369,7 @@ mod tests {
             matrix.iter().map(|row| row.iter().zip(&wanted).map(|(a, b)| a * b).sum()).collect();
         let mut front = Front::default();
         let mut factors = Vec::new();
+        let mut found = vec![[0.0; UNKNOWNS]; nodes];
         for node in 0..nodes {
             let first = node * UNKNOWNS;
             // Rows beyond the end are left out, as in `system`.
@@ -368,10 +384,9 @@ mod tests {
                 front.add_right(row, right[first + row]);
             }
             factors.push(Factors::zero());
-            front.eliminate(&mut factors[node], [1.0; UNKNOWNS]);
+            front.eliminate(&mut factors[node], &mut found[node], [1.0; UNKNOWNS]);
             front.clear_above();
         }
-        let mut found = vec![[0.0; UNKNOWNS]; nodes];
         substitute(&factors, &mut found);
         for (found, wanted) in found.concat().iter().zip(&wanted) {
             assert!((found - wanted).abs() < 1e-9, "{found} {wanted}");

@@ -1,5 +1,6 @@
 //! In the place of `avx` on processors of other kinds.
 
+use strandline_groom::Vec3Lanes;
 use wide::f32x8;
 
 use super::real::Vector;
@@ -61,12 +62,22 @@ impl Avx {
     }
 
     /// Not called.
-    pub(crate) fn answer(&mut self, _work: &mut Work<f32x8>, _forces: &[Vector<f32x8>]) {
+    pub(crate) fn set_held(&mut self, _held: &[Vector<f32x8>]) {
         match *self {}
     }
 
     /// Not called.
-    pub(crate) fn settle(&mut self, _work: &mut Work<f32x8>, _open: f32x8) {
+    pub(crate) fn round(&mut self, _forces: &[Vec3Lanes], _whole: f32x8, _ways: &mut [Vec3Lanes]) {
+        match *self {}
+    }
+
+    /// Not called.
+    pub(crate) fn settle(&mut self, _open: f32x8) {
+        match *self {}
+    }
+
+    /// Not called.
+    pub(crate) fn give(&self, _work: &mut Work<f32x8>) {
         match *self {}
     }
 }

@@ -120,6 +120,9 @@ pub struct Work<R> {
     /// 1 for strands whose last step turned no segment far, else 0.
     pub(super) calm: R,
     pub(crate) step: Vec<[R; UNKNOWNS]>,
+    /// Displacements \[m\] of a round, and the sum of those of all rounds since the last Newton step.
+    pub(super) held: Vec<Vector<R>>,
+    pub(super) sums: Vec<[R; UNKNOWNS]>,
 }
 
 impl<R: Real> Work<R> {
@@ -140,7 +143,9 @@ impl<R: Real> Work<R> {
             tensions: vec![R::of(-0.0); points],
             tangents: vec![zero; points],
             calm: R::of(0.0),
-            step: unknowns,
+            step: unknowns.clone(),
+            held: vec![zero; points],
+            sums: unknowns,
         }
     }
 
@@ -285,7 +290,12 @@ impl<R: Real> Work<R> {
     pub(super) fn take_whole_step(&mut self, unsolved: R, sound: R) -> (R, R) {
         let last = self.moved.len() - 1;
         // 0 for finite numbers, else not a number.
-        let nothing = self.step.iter().flatten().fold(R::of(0.0), |sum, number| sum + *number * R::of(0.0));
+        let mut nothing = R::of(0.0);
+        for index in 0..=last {
+            for row in 0..UNKNOWNS {
+                nothing += self.step[index][row] * R::of(0.0);
+            }
+        }
         let sound = (sound - nothing).choose(R::of(1.0), R::of(0.0));
         let largest = sound.choose(self.turn(), R::of(LONGEST_TURN));
         let share = R::of(1.0).or_less(R::of(LONGEST_TURN) / (largest + R::of(1e-30)));

@@ -61,26 +61,57 @@ impl<R: Real> Work<R> {
             (_, sound) = self.factorise(rod, (pulls, pushes), stiffer, step, first, turns);
         }
         substitute(&self.factors, &mut self.step);
+        self.sums.fill([R::of(0.0); UNKNOWNS]);
         self.begin_tensions(rod, sound.choose(meets.choose(open, R::of(0.0)), R::of(0.0)));
         let (turn, whole) = self.take_whole_step(open, sound);
+        self.hold();
         Turned { pressed, turn, whole }
     }
 
-    /// The displacements by which the system of the last Newton step answers forces \[N\]: into `step`, with the factors
-    /// kept.
+    /// The displacements in `step` are those that the next round holds.
     #[inline(always)]
-    pub fn answer(&mut self, rod: &[Node<R>], forces: &[Vector<R>]) {
+    fn hold(&mut self) {
+        for (held, step) in self.held.iter_mut().zip(&self.step) {
+            let [x, y, z, _] = *step;
+            *held = Vector::new(x, y, z);
+        }
+    }
+
+    /// Force \[N\] with which the displacements of the last round are held at a node.
+    #[inline(always)]
+    fn held(&self, pushes: &[Push<R>], index: usize) -> Vector<R> {
+        let mut held = self.held[index] * pushes[index].own;
+        if index + 1 < pushes.len() {
+            held += self.held[index + 1] * pushes[index].next;
+        }
+        if index > 0 {
+            held += self.held[index - 1] * pushes[index - 1].next;
+        }
+        held
+    }
+
+    /// A round: the displacements by which the system of the last Newton step, with its factors, answers forces \[N\] and what
+    /// holds the last displacements, of the strands with `whole` above 0: into `step`.
+    #[inline(always)]
+    pub fn round(&mut self, rod: &[Node<R>], pushes: &[Push<R>], forces: &[Vector<R>], whole: R) {
         let mut right = [R::of(0.0); ROWS];
-        for (factors, force) in self.factors.iter_mut().zip(forces) {
-            let [x, y, z] = force.array();
+        for index in 0..rod.len() {
+            let force = forces[index] + self.held(pushes, index);
+            let [x, y, z] = Vector::choose(whole, force, Vector::zero()).array();
             (right[0], right[1], right[2]) = (right[0] + x, right[1] + y, right[2] + z);
-            factors.solve(&mut right);
+            self.step[index] = self.factors[index].solve(&mut right);
             for row in 0..ROWS - UNKNOWNS {
                 right[row] = right[row + UNKNOWNS];
             }
             right[ROWS - UNKNOWNS..].fill(R::of(0.0));
         }
         substitute(&self.factors, &mut self.step);
+        self.hold();
+        for index in 0..rod.len() {
+            for row in 0..UNKNOWNS {
+                self.sums[index][row] += self.step[index][row];
+            }
+        }
         self.tighten(rod);
     }
 
@@ -110,10 +141,11 @@ impl<R: Real> Work<R> {
         }
     }
 
-    /// Takes the displacements in `step` for the strands with `open` above 0, shortened where a segment would turn too
+    /// Takes the displacements of all rounds for the strands with `open` above 0, shortened where a segment would turn too
     /// far.
     #[inline(always)]
     pub fn settle(&mut self, open: R) {
+        self.step.copy_from_slice(&self.sums);
         self.take_whole_step(open, R::of(1.0));
     }
 }

@@ -57,7 +57,7 @@ fn is_positive(
     factor: impl Fn(usize) -> f64,
 ) -> bool {
     let mut front = Front::default();
-    let mut factors = Factors::zero();
+    let (mut factors, mut solved) = (Factors::zero(), [0.0; UNKNOWNS]);
     for (index, node) in rod.iter().enumerate() {
         if let Some(segment) = segments.get(index) {
             add_stretch(&mut front, node, segment);
@@ -71,7 +71,7 @@ fn is_positive(
         }
         let free = [node.free, node.free, node.free, node.free_angle];
         // The factors of an indefinite system are meaningless.
-        if front.eliminate(&mut factors, free) == 0.0 {
+        if front.eliminate(&mut factors, &mut solved, free) == 0.0 {
             return false;
         }
         front.clear_above();

@@ -161,19 +161,46 @@ impl Workspace {
         }
     }
 
-    /// The answer to forces \[N\] with the factors of that step, in `work.step`.
-    pub fn answer(&mut self, rod: &[Node<f32x8>], forces: &[Vector<f32x8>]) {
+    /// Sets the displacements \[m\] that the next round holds; without, those of the Newton step.
+    pub fn set_held(&mut self, held: &[Vector<f32x8>]) {
         match &mut self.avx {
-            Some(avx) => avx.answer(&mut self.work, forces),
-            None => self.work.answer(rod, forces),
+            Some(avx) => avx.set_held(held),
+            None => self.work.held.copy_from_slice(held),
         }
     }
 
-    /// Takes the displacements in `work.step`.
+    /// A round: adds to the ways of points \[m\] how the factors of that step answer forces \[N\].
+    pub fn round(
+        &mut self,
+        rod: &[Node<f32x8>],
+        (pushes, forces): (&[Push<f32x8>], &[Vec3Lanes]),
+        whole: f32x8,
+        ways: &mut [Vec3Lanes],
+    ) {
+        match &mut self.avx {
+            Some(avx) => avx.round(forces, whole, ways),
+            None => {
+                let forces: Vec<_> = forces.iter().map(Vector::load).collect();
+                self.work.round(rod, pushes, &forces, whole);
+                for (way, step) in ways.iter_mut().zip(&self.work.held) {
+                    (Vector::load(way) + *step).store(way);
+                }
+            }
+        }
+    }
+
+    /// Takes the displacements of the rounds.
     pub fn settle(&mut self, open: f32x8) {
         match &mut self.avx {
-            Some(avx) => avx.settle(&mut self.work, open),
+            Some(avx) => avx.settle(open),
             None => self.work.settle(open),
+        }
+    }
+
+    /// Gives `work` what steps among other strands have moved.
+    pub fn give(&mut self) {
+        if let Some(avx) = &self.avx {
+            avx.give(&mut self.work);
         }
     }
 

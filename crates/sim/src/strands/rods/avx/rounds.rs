@@ -1,6 +1,7 @@
 //! Answers to the forces of other strands by AVX instructions.
 #![allow(unsafe_code)] // see Eight
 
+use strandline_groom::Vec3Lanes;
 use wide::f32x8;
 
 use super::{Avx, Eight, given, taken};
@@ -82,32 +83,48 @@ impl Avx {
         Turned { pressed: turned.pressed.wide(), turn: turned.turn.wide(), whole: turned.whole.wide() }
     }
 
-    /// As [`Work::answer`].
-    pub(crate) fn answer(&mut self, work: &mut Work<f32x8>, forces: &[Vector<f32x8>]) {
+    /// Sets the displacements \[m\] that the next round holds.
+    pub(crate) fn set_held(&mut self, held: &[Vector<f32x8>]) {
+        for (to, from) in self.work.held.iter_mut().zip(held) {
+            *to = taken(*from);
+        }
+    }
+
+    /// As [`Work::round`]; adds its displacements to the ways of the points.
+    pub(crate) fn round(&mut self, forces: &[Vec3Lanes], whole: f32x8, ways: &mut [Vec3Lanes]) {
         // SAFETY: as above.
-        unsafe { self.answer_there(work, forces) }
+        unsafe { self.round_there(forces, whole, ways) }
     }
 
     #[target_feature(enable = "avx")]
-    fn answer_there(&mut self, work: &mut Work<f32x8>, forces: &[Vector<f32x8>]) {
+    fn round_there(&mut self, forces: &[Vec3Lanes], whole: f32x8, ways: &mut [Vec3Lanes]) {
         self.forces.clear();
-        self.forces.extend(forces.iter().map(|force| taken(*force)));
-        self.work.answer(&self.rod, &self.forces);
-        self.give_step(work);
+        self.forces.extend(forces.iter().map(|force| taken(Vector::load(force))));
+        self.work.round(&self.rod, &self.pushes, &self.forces, Eight::from(whole));
+        for (way, step) in ways.iter_mut().zip(&self.work.held) {
+            given(taken(Vector::load(way)) + *step).store(way);
+        }
     }
 
     /// As [`Work::settle`].
-    pub(crate) fn settle(&mut self, work: &mut Work<f32x8>, open: f32x8) {
+    pub(crate) fn settle(&mut self, open: f32x8) {
         // SAFETY: as above.
-        unsafe { self.settle_there(work, open) }
+        unsafe { self.settle_there(open) }
     }
 
     #[target_feature(enable = "avx")]
-    fn settle_there(&mut self, work: &mut Work<f32x8>, open: f32x8) {
-        for (to, from) in self.work.step.iter_mut().zip(&work.step) {
-            *to = from.map(Eight::from);
-        }
+    fn settle_there(&mut self, open: f32x8) {
         self.work.settle(Eight::from(open));
+    }
+
+    /// Where the steps have taken the strands.
+    pub(crate) fn give(&self, work: &mut Work<f32x8>) {
+        // SAFETY: as above.
+        unsafe { self.give_there(work) }
+    }
+
+    #[target_feature(enable = "avx")]
+    fn give_there(&self, work: &mut Work<f32x8>) {
         self.give_moved(work);
         for (to, from) in work.segments.iter_mut().zip(&self.work.segments) {
             let (length, tangent, across) = (from.length.wide(), given(from.tangent), given(from.across));
@@ -120,11 +137,6 @@ impl Avx {
         for (to, from) in work.moved.iter_mut().zip(&self.work.moved) {
             *to = from.map(Eight::wide);
         }
-        self.give_step(work);
-    }
-
-    #[target_feature(enable = "avx")]
-    fn give_step(&self, work: &mut Work<f32x8>) {
         for (to, from) in work.step.iter_mut().zip(&self.work.step) {
             *to = from.map(Eight::wide);
         }
