@@ -896,7 +896,7 @@ class SimulationContact(TypedDict, total=False):
     so that nothing presses at rest."""
 
     enabled: bool
-    """Strands push each other apart and rub. Allowed: true or false."""
+    """Strands push each other apart and rub. A step takes four to six times as long. Allowed: true or false."""
 
     hairs: float
     """Hairs that a guide stands for. Without it those of the look over the guides in a scene, else
