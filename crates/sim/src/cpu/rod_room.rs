@@ -143,7 +143,7 @@ impl Room {
         }
     }
 
-    /// What a Newton step gets of the forces and of what holds the steps.
+    /// Finds the forces of others on each point, and the stiffness that holds it, for a Newton step.
     fn find_pushes(&mut self) {
         let last = self.steps.len() - 1;
         for point in 0..=last {

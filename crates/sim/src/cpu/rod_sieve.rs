@@ -14,12 +14,13 @@ mod avx;
 #[cfg(not(target_arch = "x86_64"))]
 #[path = "rod_sieve/no_avx.rs"]
 mod avx;
+mod eight;
+
+pub(super) use eight::Eight;
+use eight::{Lone, PARALLEL};
 
 /// Distance \[m\] that is rounding.
 pub(super) const ROUNDING: f32 = 1e-5;
-
-/// Square of a sine below which two segments count as parallel: what both are across is rounding.
-const PARALLEL: f32 = 1e-6;
 
 /// Segments in a part of a step, seen along two directions across one of them and along that across both: where they
 /// are, or if they are moving on all of their way.
@@ -43,17 +44,7 @@ impl Across<'_> {
     }
 }
 
-/// A segment against which others are tested: where it begins and its direction, the ways of its ends, vectors across it with
-/// the least and the most of these ways, and the distance \[m\] within which another without radius is near.
-struct Lone {
-    start: Vec3,
-    along: Vec3,
-    ways: [Vec3; 2],
-    sights: [(Vec3, f32, f32); 2],
-    reach: f32,
-}
-
-/// The same in each lane.
+/// A [`Lone`] in each lane.
 pub(super) struct One {
     start: Vector<f32x8>,
     along: Vector<f32x8>,
@@ -70,37 +61,11 @@ struct Sight {
     most: f32x8,
 }
 
-/// Ends of eight segments and their ways \[m\], and distances within which another is near.
-#[derive(Clone)]
-pub(super) struct Eight {
-    ends: [Vector<f32x8>; 2],
-    ways: [Vector<f32x8>; 2],
-    reach: f32x8,
-}
-
 impl Sight {
     #[inline]
     fn new(direction: Vector<f32x8>, ways: &[Vector<f32x8>; 2]) -> Self {
         let [one, other] = [direction.dot(ways[0]), direction.dot(ways[1])];
         Self { direction, least: one.fast_min(other), most: one.fast_max(other) }
-    }
-}
-
-impl Eight {
-    /// One of them, against which others are tested.
-    #[inline]
-    fn lone(&self, lane: usize) -> Lone {
-        let of = |vector: &Vector<f32x8>| {
-            Vec3::from([&vector.x, &vector.y, &vector.z].map(|numbers| numbers.as_array()[lane]))
-        };
-        let ([start, end], ways) = (self.ends.each_ref().map(of), self.ways.each_ref().map(of));
-        let along = (end - start).normalize_or(Vec3::X);
-        let across = along.any_orthonormal_vector();
-        let sights = [across, along.cross(across)].map(|direction| {
-            let (one, other) = (direction.dot(ways[0]), direction.dot(ways[1]));
-            (direction, one.min(other), one.max(other))
-        });
-        Lone { start, along, ways, sights, reach: self.reach.as_array()[lane] }
     }
 }
 

@@ -11,7 +11,7 @@ use std::arch::x86_64::{
 use glam::Vec3;
 use wide::f32x8;
 
-use super::{Eight, Lone, PARALLEL};
+use super::eight::{Eight, Lone, PARALLEL};
 use crate::strands::rods::real::Vector;
 use crate::wisps::boxes::{Hit, Row};
 
@@ -59,7 +59,7 @@ fn scan(row: &Row<Eight>, moving: bool, hits: &mut Vec<Hit>) {
     }
 }
 
-/// As [`super::Across::may_meet`].
+/// As `may_meet` of the plain sieve.
 #[target_feature(enable = "avx")]
 #[inline]
 fn may_meet(one: &Lone, eight: &Eight, lanes: u32, moving: bool) -> u32 {

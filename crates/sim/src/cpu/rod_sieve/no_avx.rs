@@ -1,6 +1,6 @@
 //! In the place of `avx` on processors of other kinds.
 
-use super::Eight;
+use super::eight::Eight;
 use crate::wisps::boxes::{Hit, Row};
 
 /// There is none.

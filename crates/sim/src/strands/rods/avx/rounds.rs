@@ -117,7 +117,7 @@ impl Avx {
         self.work.settle(Eight::from(open));
     }
 
-    /// Where the steps have taken the strands.
+    /// Copies the points and segments that the steps have moved.
     pub(crate) fn give(&self, work: &mut Work<f32x8>) {
         // SAFETY: as above.
         unsafe { self.give_there(work) }
