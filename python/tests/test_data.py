@@ -17,13 +17,15 @@ def refused(kind, *words):
 
 def test_import_is_quick_and_loads_no_gpu_or_window_library():
     code = (
-        "import time; import numpy; begun = time.process_time(); import strandline; "
-        "spent = time.process_time() - begun; maps = open('/proc/self/maps').read(); "
-        "print(spent, [name for name in ('libvulkan', 'libX11', 'libwayland', 'libGL') if name in maps])"
+        "import time; begun = time.process_time(); import numpy; between = time.process_time(); import strandline; "
+        "spent = time.process_time() - between; maps = open('/proc/self/maps').read(); "
+        "print(spent, between - begun, [name for name in ('libvulkan', 'libX11', 'libwayland', 'libGL') if name in maps])"
     )
-    spent, _, found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.partition(" ")
+    printed = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    spent, of_numpy, found = printed.split(" ", 2)
     assert found.strip() == "[]"
-    assert float(spent) < 0.15, "CPU time, which other processes do not change"
+    # Time of processors. On a machine with busy neighbours numpy takes 0.5 s and strandline 0.17 s.
+    assert float(spent) < max(0.15, 0.5 * float(of_numpy)), printed
 
 
 def test_a_groom_of_an_array_is_a_view_of_shape_strand_point(points):
