@@ -35,15 +35,6 @@ pub(super) struct Across<'a> {
     pub(super) moving: bool,
 }
 
-impl Across<'_> {
-    /// As [`Sieve::scan`], on any processor.
-    fn scan_plain(&self, row: &Row<Eight>, hits: &mut Vec<Hit>) {
-        let (eight, lane) = row.own();
-        let one = self.one(eight, lane);
-        row.scan(|eight, lanes| self.may_meet(&one, eight, lanes), hits);
-    }
-}
-
 /// A [`Lone`] in each lane.
 pub(super) struct One {
     start: Vector<f32x8>,

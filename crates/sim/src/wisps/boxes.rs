@@ -40,6 +40,11 @@ pub trait Sieve: Sync {
 
     /// Adds the groups of a row in which boxes meet and segments may be near its own, in the fastest way here.
     fn scan(&self, row: &Row<Self::Eight>, hits: &mut Vec<Hit>) {
+        self.scan_plain(row, hits);
+    }
+
+    /// As [`Sieve::scan`], on any processor.
+    fn scan_plain(&self, row: &Row<Self::Eight>, hits: &mut Vec<Hit>) {
         let (eight, lane) = row.own();
         let one = self.one(eight, lane);
         row.scan(|eight, lanes| self.may_meet(&one, eight, lanes), hits);

@@ -235,8 +235,8 @@ impl<R: Real> Front<R> {
     }
 
     /// Eliminates the first four rows and moves the others up; `solved` is what [`substitute`] begins with. `free` is 1 for
-    /// unknowns that move and 0 for those that stay. Returns 1 where the pivots of all free unknowns are positive, as those of a positive
-    /// definite system, else 0; NaN is not positive.
+    /// unknowns that move and 0 for those that stay. Returns 1 where the pivots of all free unknowns are positive, as those
+    /// of a positive definite system, else 0; NaN is not positive.
     #[inline(always)]
     pub fn eliminate(
         &mut self,
