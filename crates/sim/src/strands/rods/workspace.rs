@@ -69,6 +69,8 @@ pub(crate) struct Workspace {
     pub bad: f32x8,
     pub report: RodReport,
     pub work: Work<f32x8>,
+    /// Forces \[N\] of a round where there is no AVX, shape `[point]`.
+    forces: Vec<Vector<f32x8>>,
     avx: Option<Avx>,
     pub project: Lengths<f32x8>,
 }
@@ -94,6 +96,7 @@ impl Workspace {
             bad: none,
             report: RodReport::default(),
             work: Work::new(points),
+            forces: Vec::new(),
             avx: Avx::new(points),
             project: Lengths::new(points),
         }
@@ -180,8 +183,9 @@ impl Workspace {
         match &mut self.avx {
             Some(avx) => avx.round(forces, whole, ways),
             None => {
-                let forces: Vec<_> = forces.iter().map(Vector::load).collect();
-                self.work.round(rod, pushes, &forces, whole);
+                self.forces.clear();
+                self.forces.extend(forces.iter().map(Vector::load));
+                self.work.round(rod, pushes, &self.forces, whole);
                 for (way, step) in ways.iter_mut().zip(&self.work.held) {
                     (Vector::load(way) + *step).store(way);
                 }
