@@ -175,9 +175,9 @@ settings! {
         plain {
             /// True if a hair hides everything behind it, for any `opacity`.
             solid: bool,
-            /// True if a mesh of few triangles stands for the body in shadows and scattered light: for simpler pictures. Has an
-            /// effect on the CPU alone.
-            coarse_body: bool,
+            /// True for simpler pictures: a mesh of few triangles stands for the body in shadows and scattered light, and
+            /// soft shadows on it are found for one of four pixels. Has an effect on the CPU alone.
+            simple: bool,
         }
     }
     also Shadow::rising;

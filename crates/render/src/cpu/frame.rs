@@ -125,7 +125,7 @@ impl FrameRun<'_> {
         let FrameInput { body, lights, look, .. } = *self.input;
         let Scratch { strands, shadows, draw, .. } = &mut *self.scratch;
         draw.place_body(body);
-        let coarse = look.shadow.coarse_body;
+        let coarse = look.shadow.simple;
         if coarse {
             draw.place_coarse_body(body);
         }
@@ -148,7 +148,7 @@ impl FrameRun<'_> {
         };
         let own = own_colors.as_ref().map(|own| own.mean);
         let skin = SkinColor::new(reflected, body_look, look, own);
-        let body = draw.shadow_body_of(look.shadow.coarse_body).map(|body| (body, skin));
+        let body = draw.shadow_body_of(look.shadow.simple).map(|body| (body, skin));
         let lit = Lit { body, ..lit(self.input, shadows, own_colors.as_ref()) };
         match look.fibre.model {
             FibreModel::Scheuermann => occlusion.fill(strands, &look.shadow),

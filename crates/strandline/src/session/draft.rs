@@ -8,19 +8,19 @@ use crate::render::{LevelOfDetail, Light, PictureSettings};
 const SMALL_MAP: u32 = 192;
 const FEW_RAYS: u32 = 4;
 const FEW_SCATTERINGS: u32 = 2;
-const FEW_CELLS: u32 = 26;
+const FEW_CELLS: u32 = 16;
 /// The simpler pictures, each coarser than the one before. Fewer strands save more than fewer pixels. Times on a CPU: the bust
 /// with 16,000 strands takes 412 ms of it in the finest, 186 ms in the fourth; the window's demo at 960x752 shows 5.8 pictures
 /// a second of the fourth and 7.0 of the fifth on two processors. Those between are estimates.
 const STEPS: [Step; 5] = [
     Step { size: 0.5, strands: 6, segments: 24, time: 1.0 },
-    Step { size: 0.5, strands: 4, segments: 24, time: 0.8 },
-    Step { size: 0.4, strands: 3, segments: 12, time: 0.52 },
-    Step { size: 0.33, strands: 3, segments: 12, time: 0.45 },
-    Step { size: 0.25, strands: 2, segments: 8, time: 0.33 },
+    Step { size: 0.5, strands: 4, segments: 24, time: 0.82 },
+    Step { size: 0.4, strands: 3, segments: 12, time: 0.51 },
+    Step { size: 0.33, strands: 3, segments: 12, time: 0.47 },
+    Step { size: 0.25, strands: 2, segments: 8, time: 0.35 },
 ];
 /// Time of a full picture over that of the finest simpler one.
-const FULL_TIME: f64 = 8.0;
+const FULL_TIME: f64 = 9.0;
 
 /// A kind of simpler picture.
 struct Step {
@@ -94,7 +94,7 @@ pub(crate) fn simplified<T>(draft: Draft, view: &mut View, act: impl FnOnce(&mut
     look.follow_strands = look.follow_strands.min((most / own).max(1));
     look.shadow.map_size = look.shadow.size().min(SMALL_MAP);
     look.shadow.rays = look.shadow.rays.min(FEW_RAYS);
-    look.shadow.coarse_body = true;
+    look.shadow.simple = true;
     let scatterings = &mut look.fibre.chiang.scatterings;
     *scatterings = (*scatterings).min(FEW_SCATTERINGS);
     look.fibre.chiang.cells = look.fibre.chiang.cells.min(FEW_CELLS);

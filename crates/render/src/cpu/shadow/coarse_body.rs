@@ -90,7 +90,7 @@ mod tests {
         let (mesh, guides) = (bowl(), hair());
         let picture = PictureSettings::sized(32, 32);
         let mut look = Look { follow_strands: 2, ..Look::brown() };
-        (look.shadow.map_size, look.shadow.coarse_body) = (64, true);
+        (look.shadow.map_size, look.shadow.simple) = (64, true);
         let lights = [Light { position: Vec3::new(0.3, 1.0, 0.2), target: Vec3::ZERO, ..Light::default() }];
         let (camera, body_look) = (Camera::front(), BodyLook::default());
         let mut renderer = Renderer::new(&guides, Some(&mesh), &picture).unwrap();
@@ -110,8 +110,7 @@ mod tests {
             (scratch.strands.clone(), input.middle(scratch.bounds), reflected)
         };
         let (strands, middle, coarse) = draw(&look);
-        let full =
-            draw(&Look { shadow: crate::Shadow { coarse_body: false, ..look.shadow }, ..look.clone() }).2;
+        let full = draw(&Look { shadow: crate::Shadow { simple: false, ..look.shadow }, ..look.clone() }).2;
         let mut few = CoarseBody::default();
         let roots = root_densities(&mesh.positions, &guides);
         few.place(&mesh, None, &roots, &BodyFrame::REST);

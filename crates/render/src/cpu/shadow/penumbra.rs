@@ -39,9 +39,6 @@ const MIDDLE: [Vec2; LANES] = [Vec2::ZERO; LANES];
 pub(super) const CORNERS: [Vec2; LANES] =
     [Vec2::new(-0.5, -0.5), Vec2::new(0.5, -0.5), Vec2::new(-0.5, 0.5), Vec2::new(0.5, 0.5)];
 
-/// Parts of all rays that pixels beside each other follow one each of.
-pub(crate) const QUARTERS: usize = 4;
-
 /// True for a share at which a few rays tell of all.
 fn is_plain(share: f32) -> bool {
     share == 0.0 || share == 1.0
@@ -225,27 +222,25 @@ impl ShadowMap {
         })
     }
 
-    /// True if the rays to each of so many places of a light can be parted among pixels.
-    pub(crate) fn parts_rays(&self, places: usize) -> bool {
-        self.view.part != [Vec2::ZERO; 2] && self.settings.rays_of(places).is_multiple_of(QUARTERS * LANES)
+    /// True if pixels can follow one each of so many parts of the rays to each of so many places of a light.
+    pub(crate) fn parts_rays(&self, places: usize, parts: usize) -> bool {
+        self.view.part != [Vec2::ZERO; 2] && self.settings.rays_of(places).is_multiple_of(parts * LANES)
     }
 
-    /// As [`ShadowMap::on_skin`], by one of [`QUARTERS`] of the rays, if they can be parted so: pixels beside each other
-    /// follow one each, and their mean is that of all rays.
-    pub(crate) fn quarter_on_skin(
+    /// As [`ShadowMap::on_skin`], by one of so many parts of the rays, which can be parted so: the mean of all parts is that
+    /// of all rays.
+    pub(crate) fn part_on_skin(
         &self,
         point: Vec3,
         normal: Vec3,
         places: [usize; 2],
-        quarter: usize,
-    ) -> Option<f32> {
-        if !self.parts_rays(places[1]) {
-            return None;
-        }
+        [part, parts]: [usize; 2],
+    ) -> f32 {
+        debug_assert!(self.parts_rays(places[1], parts), "rays that cannot be parted");
         let rays = self.settings.rays_of(places[1]);
-        let count = rays / QUARTERS;
-        Some(self.along(point, normal, |shares| {
-            let group = |number: usize| Rays::new((QUARTERS * number + quarter) * LANES, rays, places);
+        let count = rays / parts;
+        self.along(point, normal, |shares| {
+            let group = |number: usize| Rays::new((parts * number + part) * LANES, rays, places);
             let first = shares(&group(0));
             let plain = count > LANES && is_plain(first[0]) && first == [first[0]; LANES];
             if plain && shares(&Rays::to(CORNERS)) == first {
@@ -253,7 +248,7 @@ impl ShadowMap {
             }
             let others = (1..count / LANES).flat_map(|number| shares(&group(number)));
             first.into_iter().chain(others).sum::<f32>() / count as f32
-        }))
+        })
     }
 
     /// Share that `of` finds from those that reach a point of skin along the rays that it asks for; 1 where nothing can

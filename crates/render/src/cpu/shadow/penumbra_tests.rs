@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 use strandline_base::Random;
 
 use super::penumbra::{
-    BETWEEN, CORNERS, FARTHEST, FIRST_GAP, GOLDEN, LEAST_SIDE, LIFT, OTHER, PLASTIC, QUARTERS, STEPS,
+    BETWEEN, CORNERS, FARTHEST, FIRST_GAP, GOLDEN, LEAST_SIDE, LIFT, OTHER, PLASTIC, STEPS,
 };
 use super::{ShadowBody, opacity_depth::opacity_depth, opacity_layers::opacity_layers};
 use crate::fast_math::exp;
@@ -144,9 +144,9 @@ fn rays_together_and_without_empty_steps_tell_the_bits_of_each_alone() {
 }
 
 #[test]
-fn the_mean_of_the_quarters_is_what_all_rays_tell() {
+fn the_mean_of_the_parts_is_what_all_rays_tell() {
     // 64 and 16 rays a place.
-    for rays in [256, 64] {
+    for (rays, parts) in [(256, 4), (64, 4), (256, 16)] {
         let shadows = maps(rays);
         let (mut soft, mut apart, mut exact) = (0, 0.0_f32, 0);
         for index in 0..400 {
@@ -154,19 +154,19 @@ fn the_mean_of_the_quarters_is_what_all_rays_tell() {
             let point = Vec3::new(0.5 * random.unit() - 0.25, 0.0, 0.5 * random.unit() - 0.25);
             let place = index as usize % 4;
             let map = shadows.map(place).unwrap();
-            let quarter = |number| map.quarter_on_skin(point, Vec3::Y, [place, 4], number).unwrap();
-            let quarters: [f32; QUARTERS] = std::array::from_fn(quarter);
+            let part = |number| map.part_on_skin(point, Vec3::Y, [place, 4], [number, parts]);
+            let found: Vec<f32> = (0..parts).map(part).collect();
             let all = map.on_skin(point, Vec3::Y, [place, 4]);
-            let off = (quarters.iter().sum::<f32>() / 4.0 - all).abs();
+            let off = (found.iter().sum::<f32>() / parts as f32 - all).abs();
             // Five rays that are all plain stand for the others, found up to 0.045 beside these.
-            assert!(off < 0.06, "{rays}: {quarters:?} {all}");
+            assert!(off < 0.06, "{rays}: {found:?} {all}");
             exact += i32::from(off < 1e-6);
             soft += i32::from(all > 0.01 && all < 0.99);
-            apart = quarters.iter().fold(apart, |apart, quarter| apart.max((quarter - all).abs()));
+            apart = found.iter().fold(apart, |apart, part| apart.max((part - all).abs()));
         }
         assert!(soft > 50 && apart > 0.02 && exact > 360, "{soft} soft, {apart}, {exact} exact");
     }
     // 5 rays cannot be parted.
     let shadows = maps(20);
-    assert_eq!(shadows.map(0).unwrap().quarter_on_skin(Vec3::ZERO, Vec3::Y, [0, 4], 0), None);
+    assert!(!shadows.map(0).unwrap().parts_rays(4, 4));
 }
