@@ -52,11 +52,17 @@ struct Square {
 impl Square {
     /// Indices of the pixels about one, of so many along a side, and their weights.
     fn about(&self, side: usize, middle: usize) -> impl Iterator<Item = (usize, f32)> + use<> {
-        let (weights, aside) = (self.weights, self.weights.len() / 2);
-        (0..weights.len() * weights.len()).map(move |number| {
-            let [x, y] = [number % weights.len(), number / weights.len()];
-            (middle + y * side + x - aside * (side + 1), weights[x] * weights[y])
+        let (weights, first) = (self.weights, middle - self.weights.len() / 2 * (side + 1));
+        weights.iter().enumerate().flat_map(move |(y, high)| {
+            weights.iter().enumerate().map(move |(x, wide)| (first + y * side + x, wide * high))
         })
+    }
+
+    /// Numbers of pixels in their squares, of so many along a side about a tile, which is a whole number of squares.
+    fn numbers(&self, side: usize) -> Vec<usize> {
+        let at = |at: usize| (at + LARGEST - BESIDE) % self.side;
+        let row = |row: usize| (0..side).map(move |column| self.parts[at(row) * self.side + at(column)]);
+        (0..side).flat_map(row).collect()
     }
 }
 
@@ -79,6 +85,8 @@ pub(super) struct LightShares<'a> {
 /// Known shares of squares of one kind.
 #[derive(Default)]
 struct Sharing {
+    /// Numbers of pixels in their squares; empty as long as nobody asked.
+    numbers: Vec<usize>,
     /// Shares that pixels found, shape `[light][row][column]`; NaN where nobody asked for them.
     found: Vec<f32>,
     /// True if the pixels about the one that is looked at share rays; `None` as long as nobody asked.
@@ -171,9 +179,12 @@ impl<'a> LightShares<'a> {
         if !self.is_shared(kind) {
             return None;
         }
+        if self.sharings[kind].numbers.is_empty() {
+            self.sharings[kind].numbers = square.numbers(self.side);
+        }
         let (mut sum, mut weights) = (0.0, 0.0);
         for (index, weight) in square.about(self.side, self.middle) {
-            if let Some(part) = parting.part(self.part_of(square, index)) {
+            if let Some(part) = parting.part(self.sharings[kind].numbers[index]) {
                 sum += weight * self.found(kind, index, source, part)?;
                 weights += weight;
             }
@@ -192,13 +203,6 @@ impl<'a> LightShares<'a> {
         let is_shared = about().filter(|&index| self.shown[index]).count() >= SQUARES[kind].least
             && about().all(|index| self.place(index).is_some_and(|(_, other)| is_near(other, depth)));
         *self.sharings[kind].is_shared.insert(is_shared)
-    }
-
-    /// Number of a pixel in its square.
-    fn part_of(&self, square: &Square, index: usize) -> usize {
-        // A tile is a whole number of squares.
-        let at = |at: usize| (at + LARGEST - BESIDE) % square.side;
-        square.parts[at(index / self.side) * square.side + at(index % self.side)]
     }
 
     /// Share by a part of the rays from a pixel, given by its number and the number of parts.
