@@ -143,7 +143,8 @@ impl WindBox {
         self.edges.element_product()
     }
 
-    /// The cells of points, along the axes \[m\].
+    /// The cells of points, along the axes \[m\]. Places before the first cell belong to it, so that no other is rounded down
+    /// but by a conversion: `floor` would be a call for each lane on the oldest processors.
     #[inline(always)]
     pub fn cells_of(&self, local: Vec3x8) -> [i32; LANES] {
         let [x, y, z] = self
@@ -323,7 +324,7 @@ impl WindBox {
     pub fn blow(&self, flow: &[Vec3], places: &Vec3x8, air: &mut Vec3Lanes) {
         let local = self.axes.local(*places);
         let [x, y, z] = self.shares(local, 0.5).map(|along| {
-            // Rounded down by a conversion: `floor` would be a call for each lane on the oldest processors.
+            // Rounded down as above.
             let low = along.fast_max(f32x8::ZERO).fast_min(splat(SIDE as f32)).fast_trunc_int();
             let low = f32x8::from_i32x8(low);
             (low, (along - low).fast_max(f32x8::ZERO).fast_min(splat(1.0)).to_array())
