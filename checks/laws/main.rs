@@ -12,6 +12,7 @@ mod friction;
 mod grab;
 mod grid_contact;
 mod hair;
+mod lasting;
 mod layers;
 mod length_scale;
 mod lengths;

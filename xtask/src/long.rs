@@ -10,7 +10,7 @@ use crate::cargo::{cargo_command, root};
 use crate::{adapter, bare, python, web};
 
 /// Long tests: an environment, and the words for cargo behind `test --workspace --test`.
-const TESTS: [((&str, &str), [&str; 2]); 23] = [
+const TESTS: [((&str, &str), [&str; 2]); 24] = [
     // Each command is ended as often as this, at random times.
     (("STRANDLINE_KILLS", "52"), ["reliability", "kills::"]),
     // Seconds of random clicks, keys and files.
@@ -34,6 +34,8 @@ const TESTS: [((&str, &str), [&str; 2]); 23] = [
     (("STRANDLINE_FULL", "1"), ["laws", "bundles::a_bundle_that_is_thrown"]),
     // Ten thousand pictures with changes at random, and a minute of shaking, in one process.
     (("STRANDLINE_FULL", "1"), ["soak", "::"]),
+    // A minute of nods and turns on the CPU, twenty seconds on a software adapter.
+    (("STRANDLINE_FULL", "1"), ["laws", "lasting::"]),
     // A minute of shaking on the CPU.
     (("STRANDLINE_FULL", "1"), ["laws", "shake::a_minute"]),
     // Ten minutes of it on the CPU.
