@@ -75,18 +75,25 @@ kernel! {
 }
 
 kernel! {
-    /// The sums; [`SHARERS`] threads are the three lower faces of a cell.
-    pub(super) struct SumFaces in "splat" (super::linked::SPLAT), entry "sum_faces" {
+    /// The sums; one thread or [`SHARERS`] of them are the three lower faces of a cell.
+    pub(super) struct SumFaces in "sum_faces" (super::linked::SUM_FACES), entry "sum_faces" {
         0 step: Read Step,
-        1 grid: ReadWrite GridState,
+        1 grid: Read GridState,
         9 start_index: Read u32,
-        10 sorted_points: ReadWrite SortedPoint,
+        10 sorted_points: Read SortedPoint,
         11 faces: ReadWrite [f32; 2],
     }
 }
 
-/// Threads that share the points around a cell: where hair is dense a cell has hundreds.
+/// Threads that share the points around a cell where hair is dense, which has hundreds there.
 const SHARERS: usize = 8;
+
+/// Threads that share the points around a cell: one where points are fewer than cells, since most of more would wait.
+fn sharers(model: &Model) -> usize {
+    let cells: u64 = model.settings.volume.cells.iter().map(|count| u64::from(*count)).product();
+    let points = model.strand_count * model.points_per_strand;
+    if points as u64 >= cells { SHARERS } else { 1 }
+}
 
 pub(super) struct Stage {
     bounds: Kernel<BoxStrands<'static>>,
@@ -96,6 +103,7 @@ pub(super) struct Stage {
     rank_points: Kernel<RankPoints<'static>>,
     sort_points: Kernel<SortPoints<'static>>,
     sum_faces: Kernel<SumFaces<'static>>,
+    sharers: usize,
 }
 
 impl StageKernels for Stage {
@@ -111,7 +119,8 @@ impl StageKernels for Stage {
         ]
     }
 
-    fn new(gpu: &Gpu, _: &Model) -> Result<Self, GpuError> {
+    fn new(gpu: &Gpu, model: &Model) -> Result<Self, GpuError> {
+        let sharers = sharers(model);
         Ok(Self {
             bounds: Kernel::new(gpu, &[])?,
             follow: Kernel::new(gpu, &[])?,
@@ -119,7 +128,8 @@ impl StageKernels for Stage {
             list_points: Kernel::new(gpu, &[])?,
             rank_points: Kernel::new(gpu, &[])?,
             sort_points: Kernel::new(gpu, &[])?,
-            sum_faces: Kernel::new(gpu, &[])?,
+            sum_faces: Kernel::new(gpu, &[("SHARERS", sharers as f64)])?,
+            sharers,
         })
     }
 
@@ -152,7 +162,7 @@ impl StageKernels for Stage {
             vec![bounds.over(buffers.strand_count), (follow, [1; 3]), find_cells.over(points)];
         dispatches.extend(scan.bind(gpu, start_index, &volume.totals)?);
         dispatches.extend([list_points.over(points), rank_points.over(points), sort_points.over(points)]);
-        dispatches.push(sum_faces.over(SHARERS * volume.cell_count));
+        dispatches.push(sum_faces.over(self.sharers * volume.cell_count));
         Ok(dispatches)
     }
 }
