@@ -42,7 +42,7 @@ law! {
             let model = style(name, &Settings::default(), 120);
             let [before, after] = [short, long].map(|seconds| drift_after(on, &model, seconds));
             // Found on the CPU after 4 and 20 s: 1.0 and 1.0 % of long hair; after 10, 30 and 60 s .9, .9 and 1.0, of a bob 1.0, 1.0
-            // and .7, of wavy hair 1.0, 1.0 and 1.1. A fiftieth is twice that, and what the law is about would add up.
+            // and .7, of wavy hair 1.0, 1.0 and 1.1. The first bound is twice that; the second is what adds up with time.
             assert!(after < 0.02 && after < before + 5e-3, "{name:?}: {before} after {short} s, {after} after {long} s");
         }
     }
