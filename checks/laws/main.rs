@@ -38,6 +38,7 @@ mod skin_work;
 mod small_motion;
 mod spans;
 mod springs;
+mod stick_slip;
 mod strands;
 mod stretch;
 mod styles;

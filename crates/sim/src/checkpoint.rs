@@ -4,6 +4,7 @@
 use strandline_body::BodyFrame;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
+use crate::loads::Loads;
 use crate::wisps::pair::Pair;
 use crate::{Model, SimError, State};
 
@@ -39,6 +40,7 @@ const SPINS: &str = "spins";
 const LENGTH_SCALE: &str = "length_scale";
 const CONTACTS: &str = "contacts";
 const TENSIONS: &str = "tensions";
+const LOADS: &str = "loads";
 const PAIRS: &str = "pairs";
 const VOLUME: &str = "volume";
 
@@ -122,6 +124,7 @@ impl State {
             length_scale,
             contacts,
             tensions,
+            loads,
             pairs,
             volume_box,
             // Lengths follow from their scales; a hand lets go.
@@ -132,7 +135,9 @@ impl State {
         let points = positions.len() / blocks.max(1);
         let mut parts = Vec::new();
         let mut add = |name, shape: &[usize], numbers: Vec<f32>| {
-            if !numbers.is_empty() {
+            let is_memory = name == TENSIONS || name == LOADS;
+            let holds_nothing = is_memory && numbers.iter().all(|number| *number == 0.0);
+            if !numbers.is_empty() && !holds_nothing {
                 parts.push(StateArray { name, shape: shape.to_vec(), numbers });
             }
         };
@@ -150,6 +155,7 @@ impl State {
         let planes = contacts.blocks.first().map_or(0, Vec::len);
         add(CONTACTS, &[blocks, planes, contacts.numbers_per_plane(), LANES], contacts.numbers());
         add(TENSIONS, &[blocks, points, LANES], scalars(tensions));
+        add(LOADS, &[blocks, points, 3, LANES], vectors(&loads.forces));
         add(PAIRS, &[pairs.len(), Pair::NUMBERS], pairs.iter().flat_map(Pair::numbers).collect());
         add(VOLUME, &[4], volume_box.iter().flatten().copied().collect());
         Checkpoint { parts, body: body.clone(), time: *time }
@@ -193,7 +199,12 @@ impl State {
         {
             let numbers = from.finite(PAIRS, &[part.numbers.len() / Pair::NUMBERS, Pair::NUMBERS])?;
             state.pairs = Pair::restored(numbers, state.positions.len(), points)?;
+        }
+        if model.rods.is_some() && from.part(TENSIONS).is_some() {
             state.tensions = to_scalars(from.finite(TENSIONS, &[blocks, points, LANES])?).collect();
+        }
+        if model.rods.is_some() && from.part(LOADS).is_some() {
+            state.loads = Loads::new(to_vectors(from.finite(LOADS, &shape)?).collect(), points);
         }
         if let Some(numbers) = from.numbers(VOLUME, &[4])? {
             state.volume_box = Some([numbers[0], numbers[1], numbers[2], numbers[3]]);
@@ -278,6 +289,43 @@ mod tests {
             let part = changed.parts.iter_mut().find(|part| part.name == name).unwrap();
             part.numbers.iter_mut().for_each(|number| *number *= 0.9);
             assert!(again(&changed).1 != wanted, "{method:?}: {name} changes nothing");
+        }
+    }
+
+    #[test]
+    fn what_presses_short_hair_hard_is_kept() {
+        let mut groom = Groom::empty(8e-5);
+        (0..11).for_each(|strand| {
+            let root = Vec3::new(0.01 * strand as f32, 0.03, 0.0);
+            groom.push([root, root + Vec3::new(1e-4, -0.01, 0.0), root - Vec3::Y * 0.02]);
+        });
+        let floor = Shape::capsule(Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), 1.0).unwrap();
+        let floor = Collider::new(floor, Carrier::World, 0.5).unwrap();
+        let guides = Guides::resample(&groom, 12).unwrap();
+        let model = Model::new(&guides, &Settings::default(), vec![floor]).unwrap();
+        let run = |state: &mut State, steps: std::ops::Range<u32>| {
+            let mut runner = CpuRunner::from(model.clone());
+            for step in steps {
+                let translation = Vec3::NEG_Y * (0.008 + 1e-4 * step as f32);
+                runner.step(state, &Drive::of(Pose { translation, ..Pose::IDENTITY }));
+            }
+        };
+        let mut state = model.rest_state(Pose { translation: Vec3::NEG_Y * 0.008, ..Pose::IDENTITY });
+        run(&mut state, 0..40);
+        let saved = state.checkpoint();
+        run(&mut state, 40..45);
+        let again = |from: &Checkpoint| {
+            let mut state = model.rest_state(Pose::IDENTITY);
+            state.restore(&model, from).unwrap();
+            run(&mut state, 40..45);
+            state.checkpoint()
+        };
+        assert!(again(&saved) == state.checkpoint());
+        for name in [TENSIONS, LOADS] {
+            let mut changed = saved.clone();
+            let part = changed.parts.iter_mut().find(|part| part.name == name).unwrap();
+            part.numbers.iter_mut().for_each(|number| *number *= 0.9);
+            assert!(again(&changed) != state.checkpoint(), "{name} changes nothing");
         }
     }
 

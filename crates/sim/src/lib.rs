@@ -27,6 +27,7 @@ mod error;
 mod grab;
 mod journal;
 mod length_scale;
+mod loads;
 mod masses;
 mod memory;
 mod model;

@@ -7,18 +7,18 @@ use crate::Settings;
 /// Bytes of a simulated point: its rest shape in guides and model, its state in both halves of a step,
 /// what it remembers of the solids of two carriers, what it brings to the volume and where, and the copies that are drawn.
 const POINT_BYTES: u64 = 296;
-/// Further bytes of a point of a rod: its node, its section and spin, and the copies of them that a change of settings
+/// Further bytes of a point of a rod: its node, its section and spin, what solids hold and its tension, and the copies of them that a change of settings
 /// or a device holds.
-const ROD_BYTES: u64 = 204;
+const ROD_BYTES: u64 = 252;
 /// Further bytes of a point of a rod where hair and solids hold back the air: its velocity there.
 const AIR_BYTES: u64 = 12;
 /// Further bytes of a point of a rod among strands that push each other, on a device: its solve, kept from part to part,
 /// and sixteen pairs with their forces and their memory. On the CPU, which has pairs of dense hair alone, 1400.
 const CONTACT_BYTES: u64 = 2800;
 /// Bytes of a point in the state that hair which rests is compared with: positions now and one step ago, velocities and
-/// their corrections, the planes of two carriers; and of a rod its section and spin.
+/// their corrections, the planes of two carriers; and of a rod its section and spin, what solids hold and its tension.
 const KEPT_BYTES: u64 = 112;
-const KEPT_ROD_BYTES: u64 = 16;
+const KEPT_ROD_BYTES: u64 = 32;
 /// Bytes of a cell: velocities and their changes on three faces, points, kind, distance and unknown.
 const CELL_BYTES: u64 = 44;
 
@@ -46,7 +46,7 @@ impl Settings {
 mod tests {
     use glam::Vec3;
     use strandline_body::{Carrier, Collider, Pose, Shape};
-    use strandline_groom::{Groom, Guides};
+    use strandline_groom::{Groom, Guides, LANES};
 
     use super::*;
     use crate::Model;
@@ -64,8 +64,15 @@ mod tests {
             [(Settings::default(), KEPT_BYTES + KEPT_ROD_BYTES), (Settings::constrained(), KEPT_BYTES)]
         {
             let solids = vec![solid(Carrier::HEAD), solid(Carrier::World)];
-            let state = Model::new(&guides, &settings, solids).unwrap().rest_state(Pose::IDENTITY);
-            let numbers: usize = state.checkpoint().parts.iter().map(|part| part.numbers.len()).sum();
+            let model = Model::new(&guides, &settings, solids).unwrap();
+            let mut state = model.rest_state(Pose::IDENTITY);
+            crate::CpuRunner::from(model).step(&mut state, &crate::Drive::default());
+            // Without the place of the volume, of all hair.
+            let parts: Vec<_> =
+                state.checkpoint().parts.into_iter().filter(|part| part.shape.len() > 1).collect();
+            let numbers: usize = parts.iter().map(|part| part.numbers.len()).sum();
+            // Loads that hold nothing are not saved.
+            let numbers = numbers + state.tensions.len() * LANES + 3 * state.loads.forces.len() * LANES;
             // And a scale of its length for each strand.
             assert_eq!(4 * (numbers as u64 - 64), wanted * 64 * 16);
         }

@@ -11,6 +11,7 @@ use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use crate::at_rest::carried;
 use crate::contact::planes::Contacts;
 use crate::grab::Grab;
+use crate::loads::Loads;
 use crate::{Drift, Model, State};
 
 impl Model {
@@ -37,6 +38,7 @@ impl Model {
             lengths: Arc::clone(&self.rest),
             contacts: Contacts::new(&self.colliders, blocks, self.points_per_strand),
             tensions: Vec::new(),
+            loads: Loads::default(),
             pairs: Vec::new(),
             volume_box: None,
             grab: Grab::default(),

@@ -8,6 +8,7 @@ use strandline_groom::{LANES, Lanes, RestShape, Vec3Lanes};
 use crate::contact::planes::Contacts;
 use crate::grab::Grab;
 use crate::length_scale::Lengths;
+use crate::loads::Loads;
 use crate::wisps::pair::Pair;
 use crate::{Currents, Model, SimError};
 use strandline_base::vec3x8::{Vec3x8, splat};
@@ -79,9 +80,11 @@ pub struct State {
     pub(crate) grab: Grab,
     /// Contact planes remembered from step to step.
     pub(crate) contacts: Contacts,
-    /// Tension of each segment of rods that push each other \[N\], shape `[block][point]` of lanes; empty before their
+    /// Tension of each segment \[N\] of rods that push each other, or that a solid presses hard, shape `[block][point]` of lanes; empty before their
     /// first step and without them.
     pub(crate) tensions: Vec<Lanes>,
+    /// Forces of solids on the latter.
+    pub(crate) loads: Loads,
     /// Pairs of strands that touch or nearly do, by their segments.
     pub(crate) pairs: Vec<Pair>,
     /// Box of the volume: lower corner with the ring \[m\] and spacing \[m\]; `None` before its first step,
@@ -215,6 +218,17 @@ impl State {
     /// The lengths of its strands.
     pub(crate) fn all_lengths(&self) -> Lengths {
         Lengths { scale: self.length_scale.clone(), rest: Arc::clone(&self.lengths) }
+    }
+
+    /// Takes over what solids hold \[N\] and tensions \[N\] as a device has them, shape `[block][point]` of lanes.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn take_loads(&mut self, forces: &[f32], tensions: &[f32]) {
+        let points = self.points_per_strand();
+        let mut lanes = vec![Vec3Lanes::default(); self.positions.len()];
+        bytemuck::cast_slice_mut(&mut lanes).copy_from_slice(forces);
+        self.loads = Loads::new(lanes, points);
+        self.tensions.resize(self.positions.len(), Lanes::default());
+        bytemuck::cast_slice_mut(&mut self.tensions).copy_from_slice(tensions);
     }
 
     /// Takes over lengths that the points have already.

@@ -161,6 +161,7 @@ impl Strands<'_> {
             let follow = Follow {
                 lengths: self.segments.lengths,
                 margins: &work.margins,
+                sinks: f32x8::ZERO,
                 last_rooted: work.spans.last_rooted,
                 solids: self.solids,
             };

@@ -22,6 +22,8 @@ pub struct Follow<'a> {
     pub lengths: &'a [Lanes],
     /// Distance \[m\] that points keep from solids.
     pub margins: &'a [f32x8],
+    /// Depth \[m\] that points may stay inside it.
+    pub sinks: f32x8,
     /// Last rooted point of each strand, -1 without one; points before it stay.
     pub last_rooted: f32x8,
     pub solids: &'a Solids<'a>,
@@ -74,7 +76,7 @@ impl Follow<'_> {
 
     /// Position of a point at its length from `before` and outside the solids.
     fn out_of_solids(&self, point: usize, before: Vec3x8, first: Vec3x8, planes: &mut [Plane]) -> Vec3x8 {
-        let (margin, length) = (self.margins[point], load(&self.lengths[point - 1]));
+        let (margin, length) = (self.margins[point] - self.sinks, load(&self.lengths[point - 1]));
         let free = splat(point as f32).simd_gt(self.last_rooted);
         let mut placed = first;
         for placing in 0..PLACINGS {

@@ -8,8 +8,8 @@ use super::rod_strands::Strands;
 use crate::contact::contacts::{Care, Query};
 use crate::contact::planes::Plane;
 use crate::grab::Pinned;
+use crate::strands::rods::pull::Pull;
 use crate::strands::rods::real::{Real, Vector};
-use crate::strands::rods::rod::Pull;
 use crate::strands::rods::workspace::Workspace;
 
 /// Stiffness of a contact or a pin over the mass of its point and the square of the step: what rests on a
@@ -33,6 +33,7 @@ impl Strands<'_> {
     ) {
         space.pulls.clear();
         let stiff = f32x8::of(STIFF / (self.parts.time_step * self.parts.time_step));
+        let end_on = self.nodes[self.nodes.len() - 1].stretch;
         let most = f32x8::splat(self.model.settings.collision_margin);
         for point in 0..self.nodes.len() {
             let node = &self.nodes[point];
@@ -49,17 +50,20 @@ impl Strands<'_> {
                     let height = touch.height(space.carried[point]);
                     let near = height.simd_lt(f32x8::splat(1.0));
                     // A touching point rests in place.
-                    let touches = height.simd_lt(f32x8::of(TOUCHES));
+                    let touches = height.simd_lt(f32x8::of(TOUCHES)) & space.loaded.simd_le(f32x8::ZERO);
+                    let held = Vector::choose(space.loaded & near, space.loads[point], Vector::zero());
                     let height = touches.bitselect((height + f32x8::of(AT)).fast_min(f32x8::ZERO), height);
+                    let stiffness = (node.mass * stiff).or_more(end_on);
                     space.pulls.push(Pull {
                         node: point,
                         normal: touch.normal,
                         reach: near.bitselect(-height, f32x8::splat(-1.0)),
-                        stiffness: (node.mass * stiff) & near,
+                        stiffness: stiffness & near,
                         one_sided: true,
                         friction: touch.friction,
                         // Zero where the root frame carries the point as the solid moves.
                         stuck: touch.stuck - space.carried[point],
+                        load: held * (f32x8::of(1.0) / stiffness),
                     });
                 }
             }
@@ -84,7 +88,7 @@ impl Strands<'_> {
         let missing = (Vector::load(&goals) - space.carried[point]).array();
         for (axis, reach) in missing.into_iter().enumerate() {
             let normal = Vector::splat([Vec3::X, Vec3::Y, Vec3::Z][axis]);
-            let (friction, stuck) = (f32x8::ZERO, Vector::zero());
+            let (friction, stuck, load) = (f32x8::ZERO, Vector::zero(), Vector::zero());
             space.pulls.push(Pull {
                 node: point,
                 normal,
@@ -93,6 +97,7 @@ impl Strands<'_> {
                 one_sided: false,
                 friction,
                 stuck,
+                load,
             });
         }
     }

@@ -126,7 +126,7 @@ impl Room {
             self.give_ways(ways);
         }
         self.meets = f32x8::from(meets);
-        self.space.forget_tensions(self.meets);
+        self.space.forget_tensions(self.meets.or_more(self.space.loaded));
     }
 
     /// Sums a force of each pair at the points.

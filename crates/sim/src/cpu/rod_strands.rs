@@ -17,6 +17,9 @@ use crate::{MOST_SPIN, Model, RodReport};
 
 /// Rounds of the projection onto lengths.
 const LENGTH_ROUNDS: u32 = 2;
+/// Depth \[m\] that points of a strand which a solid presses hard may stay in it, half the radius of a hair: until their
+/// forces are found they are not put out, which would turn the last segment aside.
+const SINKS: f32 = 2e-5;
 /// Most of its speed that slow hair loses to hairs that rub \[1/s\]: contacts of hairs give way before they slip, so
 /// that a small swing is damped and not held.
 const RUBBING_RATE: f64 = 4.0;
@@ -149,6 +152,11 @@ impl Strands<'_> {
             let remainder = space.remainders[point];
             let remainder = moved.as_ref().map_or(remainder, |moved| moved.direction(remainder));
             space.remainders[point] = remainder * free;
+            if let Some(moved) = moved
+                && space.loaded.any_positive()
+            {
+                space.loads[point] = moved.direction(space.loads[point]);
+            }
             let tangent = space.points[last.min(point + 1)] - space.points[point.saturating_sub(1)];
             if self.parts.air.blows() {
                 let wind = self.flow.get(point).map_or(self.parts.air.wind, Vector::load);
@@ -235,6 +243,7 @@ impl Strands<'_> {
         let follow = Follow {
             lengths: self.lengths,
             margins: &space.margins,
+            sinks: space.loaded.choose(f32x8::splat(SINKS), f32x8::ZERO),
             last_rooted: f32x8::from(last_rooted),
             solids: &self.parts.solids,
         };

@@ -79,7 +79,6 @@ impl CpuRunner {
         model.give_sections(state);
         if !model.settings.has_contact() {
             state.pairs.clear();
-            state.tensions.clear();
         }
         let (start, end) = (state.body.clone(), drive.body.clone());
         let time_step = model.settings.time_step;

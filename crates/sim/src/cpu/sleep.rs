@@ -85,6 +85,7 @@ fn have_same_bits(one: &State, other: &State) -> bool {
     one.body == other.body
         && one.volume_box == other.volume_box
         && are_same(&one.tensions, &other.tensions)
+        && are_same(&one.loads.forces, &other.loads.forces)
         && are_same(&one.pairs, &other.pairs)
         && are_same(&one.length_scale, &other.length_scale)
         && are_same(&one.positions, &other.positions)

@@ -1,5 +1,7 @@
 //! Buffers on the device.
 
+use std::borrow::Cow;
+
 use strandline_base::par::prelude::*;
 use strandline_body::{BodyFrame, SkinTable};
 use strandline_gpu::{Buffer, Gpu, THREADS};
@@ -118,7 +120,7 @@ impl Buffers {
 
     /// Writes the memory of the pairs of strands, where they push each other.
     pub fn write_pairs(&self, state: &State) -> Result<(), SimError> {
-        self.crowd().map_or(Ok(()), |crowd| crowd.write(&state.pairs, &state.tensions))
+        self.crowd().map_or(Ok(()), |crowd| crowd.write(&state.pairs))
     }
 
     /// The buffers of strands that push each other.
@@ -270,7 +272,7 @@ fn grip(grip: &Grip, lane: usize) -> [f32; 4] {
 }
 
 /// Velocities and what the next prediction adds to them, as the device has them; of rods sections and their
-/// speeds, room for how strands were solved, and last what the next prediction adds.
+/// speeds, room for how strands were solved, then what the next prediction adds, and last what solids hold and tensions.
 pub(super) fn speeds(state: &State) -> Vec<f32> {
     if state.sections.is_empty() {
         return [floats(&state.velocities), floats(&state.corrections)].concat();
@@ -279,7 +281,19 @@ pub(super) fn speeds(state: &State) -> Vec<f32> {
     let outcomes = vec![0.0; 2 * LANES * blocks];
     let spins: &[f32] = bytemuck::cast_slice(&state.spins);
     let corrections = floats(&state.corrections);
-    [floats(&state.velocities), floats(&state.sections), spins, &outcomes, corrections].concat()
+    let (velocities, sections) = (floats(&state.velocities), floats(&state.sections));
+    let count = state.positions.len() * LANES;
+    let of_solids = [
+        or_none(floats(&state.loads.forces), 3 * count),
+        or_none(bytemuck::cast_slice(&state.tensions), count),
+    ];
+    let [forces, tensions] = &of_solids;
+    [velocities, sections, spins, &outcomes, corrections, forces, tensions].concat()
+}
+
+/// A number of values, 0 where there are none.
+fn or_none(values: &[f32], count: usize) -> Cow<'_, [f32]> {
+    if values.is_empty() { Cow::Owned(vec![0.0; count]) } else { Cow::Borrowed(values) }
 }
 
 /// Vectors as the numbers that they are.

@@ -16,7 +16,6 @@ kernel! {
         5 predicted: ReadWrite f32,
         6 velocities: ReadWrite f32,
         7 work: ReadWrite [f32; 4],
-        11 tensions: ReadWrite f32,
     }
 }
 
@@ -119,6 +118,7 @@ kernel! {
         0 step: Read Step,
         2 rods: Read f32,
         3 rest: Read f32,
+        6 velocities: ReadWrite f32,
         7 work: ReadWrite [f32; 4],
         8 pairs: ReadWrite [f32; 4],
         9 forces: ReadWrite [f32; 4],
@@ -173,7 +173,6 @@ kernel! {
         5 predicted: ReadWrite f32,
         6 velocities: ReadWrite f32,
         7 work: ReadWrite [f32; 4],
-        11 tensions: ReadWrite f32,
     }
 }
 
@@ -247,11 +246,11 @@ impl Crowd {
         let (velocities, contacts) = (&buffers.velocities, &buffers.contacts);
         let RodBuffers { nodes: rods, work, .. } = of;
         let air = of.shelter.as_ref().map_or(&of.no_air, |shelter| &shelter.air);
-        let CrowdBuffers { pairs, forces, kept, ways, tensions, points_ahead, .. } = crowd;
-        let load = LoadRoom { step, rods, positions, predicted, velocities, work, tensions };
+        let CrowdBuffers { pairs, forces, kept, ways, points_ahead, .. } = crowd;
+        let load = LoadRoom { step, rods, positions, predicted, velocities, work };
         let begin = BeginRoom { step, air, rods, rest, predicted, velocities, work };
         let answer = AnswerPairs { step, pairs, forces, ways };
-        let push = PushRoom { step, rods, rest, work, pairs, forces, ways };
+        let push = PushRoom { step, rods, rest, velocities, work, pairs, forces, ways };
         let round = RoundRoom { step, rods, work, pairs, forces, ways };
         let end = EndRoom { step, rods, rest, predicted, velocities, work, pairs, forces };
         let keep = KeepPairs { step, predicted, pairs, forces, points_ahead, kept, contacts };
@@ -269,7 +268,7 @@ impl Crowd {
         }
         part.push(self.end.bind(gpu, &end)?.over(strands));
         part.push(self.keep_pairs.bind(gpu, &keep)?.over(segments));
-        let finish = FinishRoom { step, rods, predicted, velocities, work, tensions };
+        let finish = FinishRoom { step, rods, predicted, velocities, work };
         let mut dispatches = vec![self.load.bind(gpu, &load)?.over(strands)];
         (0..crowd.rounds.parts).for_each(|_| dispatches.extend_from_slice(&part));
         dispatches.push(self.finish.bind(gpu, &finish)?.over(strands));

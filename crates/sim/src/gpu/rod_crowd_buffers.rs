@@ -1,7 +1,7 @@
 //! Buffers of strands that push each other.
 
 use strandline_gpu::{Buffer, Gpu, Scan, mirror};
-use strandline_groom::{LANES, Lanes};
+use strandline_groom::LANES;
 
 use super::records::{EXTRAS, SLOTS, STATES};
 use crate::wisps::pair::Pair;
@@ -56,8 +56,6 @@ pub(super) struct CrowdBuffers {
     pub partners: Buffer<u32>,
     pub ways: Buffer<[f32; 4]>,
     pub points_ahead: Buffer<[f32; 4]>,
-    /// \[N\]
-    pub tensions: Buffer<f32>,
     /// \[m\]
     pub radii: Buffer<f32>,
     pub cells_taken: Buffer<u32>,
@@ -79,7 +77,6 @@ impl CrowdBuffers {
             partners: Buffer::new(gpu, "partners of segments", PAIRS * count)?,
             ways: Buffer::new(gpu, "ways of points", count)?,
             points_ahead: Buffer::new(gpu, "points ahead", 2 * count)?,
-            tensions: Buffer::new(gpu, "tensions of segments", count)?,
             radii: Buffer::from_slice(gpu, "radii of segments", bytemuck::cast_slice(&model.radii))?,
             cells_taken: Buffer::new(gpu, "cells that boxes take", EDGES)?,
             bucket_ends: Buffer::new(gpu, "buckets of boxes", buckets)?,
@@ -93,12 +90,9 @@ impl CrowdBuffers {
         lane_count * (points * (SLOTS + EXTRAS) + STATES)
     }
 
-    /// Writes the memory of pairs and the tensions of a state; of none where it has none.
-    pub fn write(&self, pairs: &[Pair], tensions: &[Lanes]) -> Result<(), SimError> {
-        self.kept.write(&to_lists(pairs, self.tensions.len()))?;
-        let none = vec![0.0; self.tensions.len()];
-        let tensions: &[f32] = if tensions.is_empty() { &none } else { bytemuck::cast_slice(tensions) };
-        Ok(self.tensions.write(tensions)?)
+    /// Writes the memory of pairs.
+    pub fn write(&self, pairs: &[Pair]) -> Result<(), SimError> {
+        Ok(self.kept.write(&to_lists(pairs, self.kept.len() / (PAIRS * KEPT_ROWS)))?)
     }
 }
 

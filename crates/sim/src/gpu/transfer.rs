@@ -5,12 +5,11 @@ use std::sync::Arc;
 use glam::Vec3;
 use strandline_body::BodyFrame;
 use strandline_gpu::{Copied, Readback, Slot, Transfer};
-use strandline_groom::Lanes;
 
 use super::buffers::Buffers;
 use super::buffers::{floats, floats_mut, speeds};
 use super::rod_buffers::RodBuffers;
-use super::rod_crowd_buffers::{CrowdBuffers, Rounds, to_pairs};
+use super::rod_crowd_buffers::{Rounds, to_pairs};
 use super::runner::GpuRunner;
 use super::volume::GridState;
 use crate::grab::Grab;
@@ -102,10 +101,7 @@ impl GpuRunner {
         let mut batch = Readback::new();
         let slots = [positions, previous, velocities].map(|buffer| batch.add(buffer, buffer.len()));
         let grid = self.buffers.volume.as_ref().map(|volume| batch.add(&volume.grid, 1));
-        let crowd = self.buffers.crowd().map(|crowd| {
-            let CrowdBuffers { kept, tensions, .. } = crowd;
-            (batch.add(kept, kept.len()), batch.add(tensions, tensions.len()))
-        });
+        let crowd = self.buffers.crowd().map(|crowd| batch.add(&crowd.kept, crowd.kept.len()));
         let transfer = batch.begin(velocities.gpu())?;
         let content = Content {
             slots,
@@ -160,8 +156,8 @@ pub struct ComingState {
 struct Content {
     slots: [Slot<f32>; 3],
     grid: Option<Slot<GridState>>,
-    /// Memory of the pairs of strands, and tensions \[N\].
-    crowd: Option<(Slot<[f32; 4]>, Slot<f32>)>,
+    /// Memory of the pairs of strands.
+    crowd: Option<Slot<[f32; 4]>>,
     has_rods: bool,
     body: BodyFrame,
     time: f64,
@@ -198,19 +194,16 @@ impl Content {
         let (velocities, others) = velocities.split_at(3 * count);
         floats_mut(&mut state.velocities).copy_from_slice(velocities);
         if self.has_rods {
+            let (others, tensions) = others.split_at(others.len() - count);
+            let (others, forces) = others.split_at(others.len() - 3 * count);
             floats_mut(&mut state.corrections).copy_from_slice(&others[others.len() - 3 * count..]);
+            state.take_loads(forces, tensions);
             floats_mut(&mut state.sections).copy_from_slice(&others[..3 * count]);
             bytemuck::cast_slice_mut(&mut state.spins).copy_from_slice(&others[3 * count..4 * count]);
         } else {
             floats_mut(&mut state.corrections).copy_from_slice(others);
         }
-        (state.pairs, state.tensions) = Default::default();
-        if let Some((kept, tensions)) = self.crowd.clone() {
-            state.pairs = to_pairs(&copied.take(kept));
-            state.tensions.resize(state.positions.len(), Lanes::default());
-            let tensions = copied.take(tensions);
-            bytemuck::cast_slice_mut(&mut state.tensions).copy_from_slice(&tensions[..]);
-        }
+        state.pairs = self.crowd.clone().map_or_else(Vec::new, |kept| to_pairs(&copied.take(kept)));
         state.body = self.body.clone();
         state.time = self.time;
         state.grab.hand = self.hand;

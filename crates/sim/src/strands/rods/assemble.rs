@@ -2,8 +2,9 @@
 
 use super::front::{ALL, Bends, Front, ROWS, Spring, UNKNOWNS};
 use super::joint::{Joint, Slope};
+use super::pull::Pull;
 use super::real::{Real, Vector};
-use super::rod::{Node, Pull, Work};
+use super::rod::{Node, Work};
 use super::rounds::Push;
 
 /// Distance \[m\] from a solid's plane within which a point touches it.
@@ -81,7 +82,7 @@ impl<R: Real> Work<R> {
     fn add_pull(&self, front: &mut Front<R>, pull: &Pull<R>, inertia: R, first: bool) -> R {
         let vector = |[x, y, z, _]: [R; UNKNOWNS]| Vector::new(x, y, z);
         let (here, normal, none) = (vector(self.moved[pull.node]), pull.normal, R::of(0.0));
-        let missing = pull.reach - normal.dot(here);
+        let missing = pull.missing(here);
         let (mut acts, mut holds, mut solid, mut ahead) = (pull.stiffness, none, none, none);
         let mut slip = Vector::zero();
         if pull.one_sided {
@@ -93,10 +94,14 @@ impl<R: Real> Work<R> {
                 let (air, blows) = self.blown(pull.node);
                 let inert = vector(self.wanted[pull.node]);
                 let wanted = inert + (air - inert) * (blows / (inertia + blows));
-                rate = pull.stiffness.choose(inertia + blows, none);
-                ahead = (pull.reach - normal.dot(wanted)) * rate;
-                solid = solid.or_more((missing + R::of(ROUNDING)).choose(ahead, none));
-                size = pull.slip(wanted).length();
+                let inertia = pull.stiffness.choose(inertia + blows, none);
+                ahead = pull.missing(wanted) * inertia;
+                let guess = solid.or_more((missing + R::of(ROUNDING)).choose(ahead, none));
+                // A force from before is no guess.
+                let held = normal.dot(pull.load);
+                solid = held.choose(solid, guess);
+                rate = held.choose(rate, inertia);
+                size = held.choose(size, pull.slip(wanted).length());
             }
             solid = solid.or_more(none);
             acts = solid.choose(pull.stiffness, none);
@@ -116,6 +121,9 @@ impl<R: Real> Work<R> {
                 }
                 front.add(row, column, pull.stiffness.choose(value, nothing));
             }
+        }
+        if pull.one_sided && self.loaded.any_positive() {
+            release_way(front, pull, here, holds);
         }
         solid.or_more(ahead)
     }
@@ -181,6 +189,23 @@ impl<R: Real> Work<R> {
         let turnings = joint.turnings(lower, upper, moments.map(|moment| moment * share));
         let (pull, stretch) = self.tension(index, node);
         front.set_joint(&Bends { springs, turnings, stretch, pull });
+    }
+}
+
+/// A loaded point that slips is held across its way alone: along it friction is the same however far it goes.
+#[inline(always)]
+fn release_way<R: Real>(front: &mut Front<R>, pull: &Pull<R>, displacement: Vector<R>, holds: R) {
+    let none = R::of(0.0);
+    let slip = pull.slip(displacement);
+    let (size, load) = (slip.length(), pull.normal.dot(pull.load));
+    let limit = pull.friction * pull.missing(displacement).or_more(none);
+    let free = load.choose((size - limit).choose(holds, none), none);
+    let free = pull.stiffness.choose(size.choose(free, none), none);
+    let along = Vector::choose(free, slip * (R::of(1.0) / size), Vector::zero()).array();
+    for row in 0..3 {
+        for column in 0..=row {
+            front.add(row, column, -(along[row] * free * along[column]));
+        }
     }
 }
 

@@ -118,7 +118,13 @@ impl Material {
 
 /// Tension over strain \[N\] of a strand over the larger of its weight and its bending force B / L^2: lengths
 /// are exact to a ten-thousandth before the last projection, and single precision carries it.
-const INEXTENSIBLE: f64 = 1e4;
+pub(super) const INEXTENSIBLE: f64 = 1e4;
+
+/// w L^2 / (B / L^2): below, a strand that is clamped at its root stands upright [Greenhill1881], and a solid at its tip may
+/// press it with more than its weight.
+const STANDS: f64 = 7.837;
+/// Stiffness of a solid's spring over that of such a strand along itself: it may not sink in before it bends.
+const END_ON: f64 = 2.0;
 
 /// The nodes of a strand with points \[m\]; `held` tells which are held. Rest shapes are not set.
 ///
@@ -157,6 +163,11 @@ pub fn nodes(points: &[Vector<f64>], section: &Section, held: impl Fn(usize) -> 
             }
         }
         passed += above;
+    }
+    let stands = STANDS * stiffest / (total * total) > weight;
+    let is_loose = (1..count).all(|index| held(index - 1) || !held(index));
+    if stands && is_loose {
+        nodes[count - 1].stretch = END_ON * stretch / total;
     }
     nodes
 }

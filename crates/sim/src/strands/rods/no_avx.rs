@@ -3,8 +3,9 @@
 use strandline_groom::Vec3Lanes;
 use wide::f32x8;
 
+use super::pull::Pull;
 use super::real::Vector;
-use super::rod::{Node, Pull, Solved, StepSettings, Work};
+use super::rod::{Node, Solved, StepSettings, Work};
 use super::rounds::{Push, Turned};
 
 /// There is none.
@@ -22,7 +23,7 @@ impl Avx {
         &mut self,
         _work: &mut Work<f32x8>,
         _rod: &[Node<f32x8>],
-        _pulls: &[Pull<f32x8>],
+        _pulls: &mut [Pull<f32x8>],
         _settings: &StepSettings<f32x8>,
     ) -> Solved<f32x8> {
         match *self {}
@@ -77,7 +78,17 @@ impl Avx {
     }
 
     /// Not called.
-    pub(crate) fn give(&self, _work: &mut Work<f32x8>) {
+    pub(crate) fn give(&self, _work: &mut Work<f32x8>, _pulls: &mut [Pull<f32x8>]) {
+        match *self {}
+    }
+
+    /// Not called.
+    pub(crate) fn set_loaded(&mut self, _loaded: f32x8) {
+        match *self {}
+    }
+
+    /// Not called.
+    pub(crate) fn loaded(&self) -> f32x8 {
         match *self {}
     }
 }

@@ -2,11 +2,12 @@
 
 use super::front::{ALL, Factors, UNKNOWNS, substitute};
 use super::joint::{Joint, Segment};
+use super::pull::Pull;
 use super::real::{Real, Vector};
 
 /// A node of a rod: a point, the segment from it to the next, and the joint at it.
 ///
-/// The first and the last point have no joint, the last has no segment: their numbers are 0.
+/// The first and the last point have no joint, the last has no segment: their numbers are 0, but for `stretch`.
 #[derive(Clone, Copy, Debug)]
 pub struct Node<R> {
     /// Mass of the point \[kg\].
@@ -19,7 +20,8 @@ pub struct Node<R> {
     pub free_angle: R,
     /// Length \[m\] at which the segment is without tension.
     pub length: R,
-    /// Tension of the segment over its strain \[N\].
+    /// Tension of the segment over its strain \[N\]. Of the last point: least stiffness \[N/m\] with which a solid presses
+    /// the strand, 0 where that follows from masses alone.
     pub stretch: R,
     /// Moments over strains \[N m\] of the joint: of the two bends, and of the twist.
     pub stiffness: [R; 3],
@@ -59,34 +61,6 @@ impl<R: Real> Node<R> {
     }
 }
 
-/// A plane or a pin that pulls at a point: energy stiffness / 2 (normal . displacement - reach)^2.
-#[derive(Clone, Copy, Debug)]
-pub struct Pull<R> {
-    /// Node.
-    pub node: usize,
-    /// Unit direction.
-    pub normal: Vector<R>,
-    /// Displacement \[m\] along the direction at which the force is 0.
-    pub reach: R,
-    /// Force over displacement \[N/m\]; 0 in lanes without.
-    pub stiffness: R,
-    /// True if it only pushes, as a solid does: while the displacement is less than the reach.
-    pub one_sided: bool,
-    /// Coulomb friction coefficient, where it only pushes.
-    pub friction: R,
-    /// Displacement \[m\] with which the node sticks to it.
-    pub stuck: Vector<R>,
-}
-
-impl<R: Real> Pull<R> {
-    /// Distance of a displacement \[m\] from the place where the node sticks, across the direction.
-    #[inline(always)]
-    pub(super) fn slip(&self, displacement: Vector<R>) -> Vector<R> {
-        let slip = displacement - self.stuck;
-        slip - self.normal * self.normal.dot(slip)
-    }
-}
-
 /// Settings of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct StepSettings<R> {
@@ -119,6 +93,8 @@ pub struct Work<R> {
     pub(super) tangents: Vec<Vector<R>>,
     /// 1 for strands whose last step turned no segment far, else 0.
     pub(super) calm: R,
+    /// 1 for strands that a solid presses hard: they have tensions, and their pulls have loads. Else 0.
+    pub(crate) loaded: R,
     pub(crate) step: Vec<[R; UNKNOWNS]>,
     /// Displacements \[m\] of a round, and the sum of those of all rounds since the last Newton step.
     pub(super) held: Vec<Vector<R>>,
@@ -143,6 +119,7 @@ impl<R: Real> Work<R> {
             tensions: vec![R::of(-0.0); points],
             tangents: vec![zero; points],
             calm: R::of(0.0),
+            loaded: R::of(0.0),
             step: unknowns.clone(),
             held: vec![zero; points],
             sums: unknowns,
@@ -195,7 +172,7 @@ impl<R: Real> Work<R> {
     /// An implicit Euler step: minimises inertia and elastic energy over all displacements and angles
     /// of the strand by Newton's method. A solved strand keeps its numbers while the others of its block go on.
     #[inline(always)]
-    pub fn solve(&mut self, rod: &[Node<R>], pulls: &[Pull<R>], settings: &StepSettings<R>) -> Solved<R> {
+    pub fn solve(&mut self, rod: &[Node<R>], pulls: &mut [Pull<R>], settings: &StepSettings<R>) -> Solved<R> {
         self.prepare(rod, settings.viscous);
         let stiffer = R::of(1.0) + settings.viscous;
         let mut unsolved = R::of(1.0);
@@ -203,15 +180,20 @@ impl<R: Real> Work<R> {
         let mut steps = 0;
         while steps < settings.newton_steps && unsolved.any_positive() {
             let (pressed, mut sound) =
-                self.factorise(rod, (pulls, &[]), stiffer, settings.time_step, steps == 0, R::of(ALL));
+                self.factorise(rod, (&*pulls, &[]), stiffer, settings.time_step, steps == 0, R::of(ALL));
             if unsolved.choose(R::of(1.0) - sound, R::of(0.0)).any_positive() {
                 let turns = sound.choose(R::of(ALL), R::of(0.0));
                 (_, sound) =
-                    self.factorise(rod, (pulls, &[]), stiffer, settings.time_step, steps == 0, turns);
+                    self.factorise(rod, (&*pulls, &[]), stiffer, settings.time_step, steps == 0, turns);
             }
             touched = unsolved.choose(pressed, touched);
             substitute(&self.factors, &mut self.step);
+            let hard = sound.choose(self.pressed_hard(rod, pressed, steps == 0), R::of(0.0));
+            let loads = self.load_tensions(rod, unsolved, hard);
             let turn = self.take_step(unsolved, sound);
+            if loads {
+                self.load(rod, pulls, unsolved);
+            }
             residual = unsolved.choose(turn, residual);
             let open = if steps == 0 {
                 // Friction is not decided yet for a touching point.
@@ -368,7 +350,7 @@ mod tests {
             let mut work = Work::new(5);
             work.begin(|_| Vector::new(0.1, 0.0, 0.0), |_| Vector::new(0.0, 1.0, 0.0));
             (1..5).for_each(|node| work.want(node, [0.0, -1e-3, 0.0, 0.0]));
-            let solved = work.solve(&rod, &[], &settings);
+            let solved = work.solve(&rod, &mut [], &settings);
             (solved, work.moved)
         };
         let (sound, moved) = solved(|_| ());

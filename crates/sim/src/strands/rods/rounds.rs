@@ -2,8 +2,9 @@
 //! kept.
 
 use super::front::{ALL, ROWS, UNKNOWNS, substitute};
+use super::pull::Pull;
 use super::real::{Real, Vector};
-use super::rod::{Node, Pull, StepSettings, Work};
+use super::rod::{Node, StepSettings, Work};
 
 /// Effect of other strands on a node.
 #[derive(Clone, Copy, Debug)]
@@ -47,7 +48,7 @@ impl<R: Real> Work<R> {
     pub fn push(
         &mut self,
         rod: &[Node<R>],
-        (pulls, pushes): (&[Pull<R>], &[Push<R>]),
+        (pulls, pushes): (&mut [Pull<R>], &[Push<R>]),
         settings: &StepSettings<R>,
         first: bool,
         (open, meets): (R, R),
@@ -55,15 +56,22 @@ impl<R: Real> Work<R> {
         let stiffer = R::of(1.0) + settings.viscous;
         let step = settings.time_step;
         let turns = meets.choose(R::of(SMALL), R::of(ALL));
-        let (pressed, mut sound) = self.factorise(rod, (pulls, pushes), stiffer, step, first, turns);
+        let (pressed, mut sound) = self.factorise(rod, (&*pulls, pushes), stiffer, step, first, turns);
         if open.choose(R::of(1.0) - sound, R::of(0.0)).any_positive() {
             let turns = sound.choose(turns, R::of(0.0));
-            (_, sound) = self.factorise(rod, (pulls, pushes), stiffer, step, first, turns);
+            (_, sound) = self.factorise(rod, (&*pulls, pushes), stiffer, step, first, turns);
         }
         substitute(&self.factors, &mut self.step);
         self.sums.fill([R::of(0.0); UNKNOWNS]);
-        self.begin_tensions(rod, sound.choose(meets.choose(open, R::of(0.0)), R::of(0.0)));
+        let hard = self.pressed_hard(rod, pressed, first);
+        let keeps = sound.choose(hard.choose(R::of(1.0), meets), R::of(0.0));
+        self.begin_tensions(rod, sound.choose(open, R::of(0.0)), keeps);
+        let was_loaded = self.loaded;
+        self.loaded = open.choose(hard.choose(self.calm, R::of(0.0)), was_loaded);
         let (turn, whole) = self.take_whole_step(open, sound);
+        if was_loaded.or_more(self.loaded).any_positive() {
+            self.load(rod, pulls, open);
+        }
         self.hold();
         Turned { pressed, turn, whole }
     }
@@ -116,10 +124,11 @@ impl<R: Real> Work<R> {
     }
 
     /// Tensions of the strands with `open` above 0 after a Newton step, to first order: with them the next system finds
-    /// lengths that are exact, whatever the strand carries. Strands that turn far have none.
+    /// lengths that are exact, whatever the strand carries. Strands that turn far have none, nor those without `keeps`.
     #[inline(always)]
-    fn begin_tensions(&mut self, rod: &[Node<R>], open: R) {
-        self.calm = open.choose((R::of(CALM) - self.turn()).choose(R::of(1.0), R::of(0.0)), R::of(0.0));
+    pub(super) fn begin_tensions(&mut self, rod: &[Node<R>], open: R, keeps: R) {
+        let keeps = open.choose(keeps, R::of(0.0));
+        self.calm = keeps.choose((R::of(CALM) - self.turn()).choose(R::of(1.0), R::of(0.0)), R::of(0.0));
         for index in 0..rod.len() - 1 {
             let (segment, node) = (&self.segments[index], &rod[index]);
             self.tangents[index] = segment.tangent;

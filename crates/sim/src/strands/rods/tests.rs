@@ -95,7 +95,7 @@ impl<R: Seen> Strand<R> {
         }
         self.work.solve(
             &self.rod,
-            &[],
+            &mut [],
             &StepSettings { time_step, newton_steps, tolerance: 1e-5, viscous: R::of(0.0) },
         );
         let mut moved: Vec<Vector<R>> =

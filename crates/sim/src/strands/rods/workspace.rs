@@ -8,8 +8,9 @@ use wide::f32x8;
 
 use super::avx::Avx;
 use super::lengths::Lengths;
+use super::pull::Pull;
 use super::real::{Real, Vector};
-use super::rod::{Node, Pull, Solved, StepSettings, Work};
+use super::rod::{Node, Solved, StepSettings, Work};
 use super::rounds::{Push, Turned};
 use crate::RodReport;
 
@@ -56,6 +57,10 @@ pub(crate) struct Workspace {
     /// Motion at their velocity from there.
     pub coast: Vec<Vector<f32x8>>,
     pub pulls: Vec<Pull<f32x8>>,
+    /// Forces \[N\] that solids which press hard hold of the points; zero for strands without.
+    pub loads: Vec<Vector<f32x8>>,
+    /// Above 0 for strands that have any.
+    pub loaded: f32x8,
     pub margins: Vec<f32x8>,
     /// Parts of the positions that rounding left out \[m\].
     pub remainders: Vec<Vector<f32x8>>,
@@ -87,6 +92,8 @@ impl Workspace {
             wanted: vec![zero; points],
             coast: vec![zero; points],
             pulls: Vec::with_capacity(4 * points),
+            loads: vec![zero; points],
+            loaded: none,
             margins: vec![none; points],
             remainders: vec![zero; points],
             moved: vec![zero; points],
@@ -104,10 +111,13 @@ impl Workspace {
 
     /// An implicit Euler step of the rods, in the way that is the fastest here: bits are the same.
     pub fn solve(&mut self, rod: &[Node<f32x8>], settings: &StepSettings<f32x8>) -> Solved<f32x8> {
-        match &mut self.avx {
-            Some(avx) => avx.solve(&mut self.work, rod, &self.pulls, settings),
-            None => self.work.solve(rod, &self.pulls, settings),
-        }
+        self.set_loaded();
+        let solved = match &mut self.avx {
+            Some(avx) => avx.solve(&mut self.work, rod, &mut self.pulls, settings),
+            None => self.work.solve(rod, &mut self.pulls, settings),
+        };
+        self.take_loads();
+        solved
     }
 
     /// Sets the tensions \[N\] with which a step among other strands begins; none where there are none.
@@ -147,6 +157,7 @@ impl Workspace {
             Some(avx) => avx.prepare(&mut self.work, rod, &self.pulls, viscous),
             None => self.work.prepare(rod, viscous),
         }
+        self.set_loaded();
     }
 
     /// A Newton step of it.
@@ -160,7 +171,7 @@ impl Workspace {
     ) -> Turned<f32x8> {
         match &mut self.avx {
             Some(avx) => avx.push(&mut self.work, pushes, settings, first, [open, meets]),
-            None => self.work.push(rod, (&self.pulls, pushes), settings, first, (open, meets)),
+            None => self.work.push(rod, (&mut self.pulls, pushes), settings, first, (open, meets)),
         }
     }
 
@@ -204,8 +215,54 @@ impl Workspace {
     /// Gives `work` what steps among other strands have moved.
     pub fn give(&mut self) {
         if let Some(avx) = &self.avx {
-            avx.give(&mut self.work);
+            avx.give(&mut self.work, &mut self.pulls);
         }
+        self.take_loads();
+    }
+
+    fn set_loaded(&mut self) {
+        match &mut self.avx {
+            Some(avx) => avx.set_loaded(self.loaded),
+            None => self.work.loaded = self.loaded,
+        }
+    }
+
+    /// Takes over the forces of solids on strands that they press hard.
+    fn take_loads(&mut self) {
+        let loaded = self.avx.as_ref().map_or(self.work.loaded, Avx::loaded);
+        if !self.loaded.or_more(loaded).any_positive() {
+            return;
+        }
+        self.loaded = loaded;
+        self.loads.fill(Vector::zero());
+        for pull in self.pulls.iter().filter(|pull| pull.one_sided) {
+            self.loads[pull.node] = pull.load * pull.stiffness;
+        }
+    }
+
+    /// Sets the forces \[N\] with which a step begins of the strands with a bit in `lanes`.
+    pub fn set_loads(&mut self, lanes: u8, tensions: &[Lanes], forces: &[Vec3Lanes]) {
+        if lanes == 0 && !self.loaded.any_positive() {
+            return;
+        }
+        self.loaded = f32x8::from(std::array::from_fn::<f32, LANES, _>(|lane| f32::from(lanes >> lane & 1)));
+        for (load, force) in self.loads.iter_mut().zip(forces) {
+            *load = Vector::choose(self.loaded, Vector::load(force), Vector::zero());
+        }
+        self.set_tensions(if lanes == 0 { &[] } else { tensions });
+        self.forget_tensions(self.loaded);
+    }
+
+    /// Writes them, and returns the strands that have any. Those that are no number are none.
+    pub fn store_loads(&self, lanes: u8, tensions: &mut [Lanes], forces: &mut [Vec3Lanes]) -> u8 {
+        let loaded = self.loaded.simd_gt(f32x8::ZERO).to_bitmask() as u8;
+        if lanes | loaded != 0 {
+            for (load, force) in self.loads.iter().zip(forces) {
+                load.store(force);
+            }
+            self.store_tensions(tensions);
+        }
+        loaded
     }
 
     pub fn load(

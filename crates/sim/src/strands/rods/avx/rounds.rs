@@ -6,8 +6,9 @@ use wide::f32x8;
 
 use super::{Avx, Eight, given, taken};
 use crate::strands::rods::joint::Segment;
+use crate::strands::rods::pull::Pull;
 use crate::strands::rods::real::Vector;
-use crate::strands::rods::rod::{Node, Pull, StepSettings, Work};
+use crate::strands::rods::rod::{Node, StepSettings, Work};
 use crate::strands::rods::rounds::{Push, Turned};
 
 impl Avx {
@@ -76,7 +77,7 @@ impl Avx {
         }));
         let StepSettings { time_step, newton_steps, tolerance, viscous } = *settings;
         let settings = StepSettings { time_step, newton_steps, tolerance, viscous: Eight::from(viscous) };
-        let (pulls, pushes) = (&self.pulls[..], &self.pushes[..]);
+        let (pulls, pushes) = (&mut self.pulls[..], &self.pushes[..]);
         let [open, meets] = open.map(Eight::from);
         let turned = self.work.push(&self.rod, (pulls, pushes), &settings, first, (open, meets));
         self.give_moved(work);
@@ -118,14 +119,15 @@ impl Avx {
     }
 
     /// Copies the points and segments that the steps have moved.
-    pub(crate) fn give(&self, work: &mut Work<f32x8>) {
+    pub(crate) fn give(&self, work: &mut Work<f32x8>, pulls: &mut [Pull<f32x8>]) {
         // SAFETY: as above.
-        unsafe { self.give_there(work) }
+        unsafe { self.give_there(work, pulls) }
     }
 
     #[target_feature(enable = "avx")]
-    fn give_there(&self, work: &mut Work<f32x8>) {
+    fn give_there(&self, work: &mut Work<f32x8>, pulls: &mut [Pull<f32x8>]) {
         self.give_moved(work);
+        self.give_loads(pulls);
         for (to, from) in work.segments.iter_mut().zip(&self.work.segments) {
             let (length, tangent, across) = (from.length.wide(), given(from.tangent), given(from.across));
             *to = Segment { length, tangent, across };
