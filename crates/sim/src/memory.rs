@@ -15,6 +15,9 @@ const AIR_BYTES: u64 = 12;
 /// Further bytes of a point of a rod among strands that push each other, on a device: its solve, kept from part to part,
 /// and sixteen pairs with their forces and their memory. On the CPU, which has pairs of dense hair alone, 1400.
 const CONTACT_BYTES: u64 = 2800;
+/// Sixteen more pairs, of as few points as have room for them: see gpu/rod_crowd_buffers.rs.
+const MORE_PAIRS_BYTES: u64 = 2112;
+const MORE_PAIRS_UP_TO: u64 = 87_381;
 /// Bytes of a point in the state that hair which rests is compared with: positions now and one step ago, velocities and
 /// their corrections, the planes of two carriers; and of a rod its section and spin, what solids hold and its tension.
 const KEPT_BYTES: u64 = 112;
@@ -29,7 +32,8 @@ impl Settings {
         let strands = format!("{points_per_strand} points on each of {strand_count} simulated strands");
         let of_rods = if self.has_rods() { ROD_BYTES + KEPT_ROD_BYTES } else { 0 };
         let of_air = if self.has_shelter() { AIR_BYTES } else { 0 };
-        let of_contact = if self.has_contact() { CONTACT_BYTES } else { 0 };
+        let more = if points <= MORE_PAIRS_UP_TO { MORE_PAIRS_BYTES } else { 0 };
+        let of_contact = if self.has_contact() { CONTACT_BYTES + more } else { 0 };
         let bytes = POINT_BYTES + KEPT_BYTES + of_rods + of_air + of_contact;
         let mut needs = vec![Need::new(strands, points, bytes)];
         if self.volume.enabled {

@@ -4,7 +4,7 @@ use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, k
 
 use super::inputs::Step;
 use super::rod_buffers::RodBuffers;
-use super::rod_crowd_buffers::{ContactState, CrowdBuffers};
+use super::rod_crowd_buffers::{ContactState, CrowdBuffers, pairs_of};
 use super::stage::Target;
 
 kernel! {
@@ -178,6 +178,8 @@ kernel! {
 
 /// The pipeline constant CROWD (rod_room.wesl), by its number: strands push each other.
 const CROWD: (&str, f64) = ("3", 1.0);
+/// The number of the pipeline constant PAIRS (rod_pairs.wesl).
+const PAIRS: &str = "4";
 
 /// The kernels.
 pub(super) struct Crowd {
@@ -217,8 +219,9 @@ impl Crowd {
         ]
     }
 
-    /// Compiles the kernels; `skins` is the constant of the solids.
-    pub fn new(gpu: &Gpu, skins: (&str, f64)) -> Result<Self, GpuError> {
+    /// Compiles the kernels for a number of segments; `skins` is the constant of the solids.
+    pub fn new(gpu: &Gpu, skins: (&str, f64), segments: usize) -> Result<Self, GpuError> {
+        let pairs = (PAIRS, pairs_of(segments) as f64);
         Ok(Self {
             load: Kernel::new(gpu, &[])?,
             begin: Kernel::new(gpu, &[skins])?,
@@ -226,13 +229,13 @@ impl Crowd {
             measure_boxes: Kernel::new(gpu, &[])?,
             count_boxes: Kernel::new(gpu, &[])?,
             list_boxes: Kernel::new(gpu, &[])?,
-            find_partners: Kernel::new(gpu, &[])?,
-            meet_pairs: Kernel::new(gpu, &[])?,
-            answer_pairs: Kernel::new(gpu, &[])?,
-            push: Kernel::new(gpu, &[CROWD])?,
-            round: Kernel::new(gpu, &[])?,
-            end: Kernel::new(gpu, &[skins])?,
-            keep_pairs: Kernel::new(gpu, &[])?,
+            find_partners: Kernel::new(gpu, &[pairs])?,
+            meet_pairs: Kernel::new(gpu, &[pairs])?,
+            answer_pairs: Kernel::new(gpu, &[pairs])?,
+            push: Kernel::new(gpu, &[CROWD, pairs])?,
+            round: Kernel::new(gpu, &[pairs])?,
+            end: Kernel::new(gpu, &[skins, pairs])?,
+            keep_pairs: Kernel::new(gpu, &[pairs])?,
             finish: Kernel::new(gpu, &[])?,
         })
     }

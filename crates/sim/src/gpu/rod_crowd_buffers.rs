@@ -7,8 +7,10 @@ use super::records::{EXTRAS, SLOTS, STATES};
 use crate::wisps::pair::Pair;
 use crate::{Model, Settings, SimError};
 
-/// Most pairs of a segment: of more the nearest.
-pub(super) const PAIRS: usize = 16;
+/// Most pairs of a segment, of more the nearest: of few segments, and of so many that the pairs of more would not fit a buffer
+/// of WebGPU's size.
+const MOST_PAIRS: usize = 32;
+const LEAST_PAIRS: usize = 16;
 /// Vectors of a pair in a part of a step, of its forces, and in its memory.
 pub(super) const PAIR_ROWS: usize = 3;
 pub(super) const FORCE_ROWS: usize = 3;
@@ -46,6 +48,13 @@ impl Rounds {
     }
 }
 
+/// Most pairs of each of a number of segments.
+pub(super) fn pairs_of(segments: usize) -> usize {
+    const BUFFER: usize = 128 << 20;
+    let fits = MOST_PAIRS * PAIR_ROWS.max(FORCE_ROWS) * size_of::<[f32; 4]>() * segments <= BUFFER;
+    if fits { MOST_PAIRS } else { LEAST_PAIRS }
+}
+
 /// The buffers of strands that push each other; see rod_pairs.wesl, rod_room.wesl and rod_ways.wesl. Segments have the
 /// numbers of their lanes, `[block][point][lane]`; vectors of pairs lie `[pair][row][segment]`.
 pub(super) struct CrowdBuffers {
@@ -68,13 +77,14 @@ impl CrowdBuffers {
     /// Buffers for a model's strands, which no pair remembers.
     pub fn new(gpu: &Gpu, model: &Model) -> Result<Self, SimError> {
         let count = model.positions.len() * LANES;
+        let most = pairs_of(count);
         let buckets = (CELLS_OF_BOX * count).next_power_of_two();
         Ok(Self {
             rounds: Rounds::new(&model.settings),
-            pairs: Buffer::new(gpu, "pairs of strands", PAIRS * PAIR_ROWS * count)?,
-            forces: Buffer::new(gpu, "forces of pairs of strands", PAIRS * FORCE_ROWS * count)?,
-            kept: Buffer::new(gpu, "memory of pairs of strands", PAIRS * KEPT_ROWS * count)?,
-            partners: Buffer::new(gpu, "partners of segments", PAIRS * count)?,
+            pairs: Buffer::new(gpu, "pairs of strands", most * PAIR_ROWS * count)?,
+            forces: Buffer::new(gpu, "forces of pairs of strands", most * FORCE_ROWS * count)?,
+            kept: Buffer::new(gpu, "memory of pairs of strands", most * KEPT_ROWS * count)?,
+            partners: Buffer::new(gpu, "partners of segments", most * count)?,
             ways: Buffer::new(gpu, "ways of points", count)?,
             points_ahead: Buffer::new(gpu, "points ahead", 2 * count)?,
             radii: Buffer::from_slice(gpu, "radii of segments", bytemuck::cast_slice(&model.radii))?,
@@ -92,18 +102,19 @@ impl CrowdBuffers {
 
     /// Writes the memory of pairs.
     pub fn write(&self, pairs: &[Pair]) -> Result<(), SimError> {
-        Ok(self.kept.write(&to_lists(pairs, self.kept.len() / (PAIRS * KEPT_ROWS)))?)
+        Ok(self.kept.write(&to_lists(pairs, self.ways.len()))?)
     }
 }
 
 /// The memory of pairs in the lists of both segments, of a number of segments: see `kept` in rod_ways.wesl. A pair that
 /// finds no room in one is in none.
 fn to_lists(pairs: &[Pair], count: usize) -> Vec<[f32; 4]> {
-    let mut lists = vec![[0.0; 4]; PAIRS * KEPT_ROWS * count];
+    let most = pairs_of(count);
+    let mut lists = vec![[0.0; 4]; most * KEPT_ROWS * count];
     let mut lengths = vec![0; count];
     for pair in pairs {
         let [one, other] = pair.segments.map(|segment| segment as usize);
-        if lengths[one] == PAIRS || lengths[other] == PAIRS {
+        if lengths[one] == most || lengths[other] == most {
             continue;
         }
         for (segment, partner) in [(one, other), (other, one)] {
@@ -117,12 +128,11 @@ fn to_lists(pairs: &[Pair], count: usize) -> Vec<[f32; 4]> {
     lists
 }
 
-/// The pairs of lists, in rising order.
-pub(super) fn to_pairs(lists: &[[f32; 4]]) -> Vec<Pair> {
-    let count = lists.len() / (PAIRS * KEPT_ROWS);
+/// The pairs of the lists of a number of segments, in rising order.
+pub(super) fn to_pairs(lists: &[[f32; 4]], count: usize) -> Vec<Pair> {
     let mut pairs = Vec::new();
     for segment in 0..count {
-        for at in (0..PAIRS).map(|pair| pair * KEPT_ROWS * count + segment) {
+        for at in (0..pairs_of(count)).map(|pair| pair * KEPT_ROWS * count + segment) {
             let ([x, y, z, code], [u, v, w, gap]) = (lists[at], lists[at + count]);
             let partner = code.abs() as usize;
             if partner > segment + 1 {
@@ -154,8 +164,11 @@ mod tests {
             slides: f32::from(u8::from(other % 2 == 1)),
         };
         let few = [pair(0, 3), pair(0, 17), pair(3, 9), pair(8, 9)];
-        assert_eq!(to_pairs(&to_lists(&few, 32)), few);
-        let many: Vec<Pair> = (1..20).map(|other| pair(0, other)).collect();
-        assert_eq!(to_pairs(&to_lists(&many, 32)), many[..PAIRS]);
+        assert_eq!(to_pairs(&to_lists(&few, 48), 48), few);
+        let many: Vec<Pair> = (1..40).map(|other| pair(0, other)).collect();
+        assert_eq!(to_pairs(&to_lists(&many, 48), 48), many[..MOST_PAIRS]);
+        // As many as a buffer has room for, and one more.
+        let fitting = (128 << 20) / (32 * 3 * 16);
+        assert_eq!([fitting, fitting + 1].map(pairs_of), [32, 16]);
     }
 }

@@ -51,7 +51,7 @@ impl StageKernels for Stage {
             let kernels = match self.crowd.get() {
                 Some(compiled) => compiled,
                 None => {
-                    let compiled = Crowd::new(gpu, self.skins)?;
+                    let compiled = Crowd::new(gpu, self.skins, buffers.point_count())?;
                     self.crowd.get_or_init(|| compiled)
                 }
             };

@@ -203,7 +203,7 @@ impl Content {
         } else {
             floats_mut(&mut state.corrections).copy_from_slice(others);
         }
-        state.pairs = self.crowd.clone().map_or_else(Vec::new, |kept| to_pairs(&copied.take(kept)));
+        state.pairs = self.crowd.clone().map_or_else(Vec::new, |kept| to_pairs(&copied.take(kept), count));
         state.body = self.body.clone();
         state.time = self.time;
         state.grab.hand = self.hand;
