@@ -86,7 +86,15 @@ fn apart([one, other]: [&State; 2]) -> [f32; 2] {
 
 #[test]
 fn solve_rods_finds_the_same_pairs_and_pushes_them_alike() {
-    let model = crossing(|_| ());
+    agree(crossing(|_| ()));
+}
+
+#[test]
+fn solve_rods_holds_wet_pairs_together_alike() {
+    agree(crossing(|settings| settings.contact.pull = 0.05));
+}
+
+fn agree(model: Model) {
     // At rest, in the fall, when the first press, and when nearly all have calmed down.
     for before in [0, 5, 9, 40] {
         let Some([(expected, report), (state, found)]) = both(before, &model, model.clone()) else { return };
@@ -112,6 +120,16 @@ fn solve_rods_finds_the_same_pairs_and_pushes_them_alike() {
 fn parity_of_pairs_sees_other_friction() {
     let other = crossing(|settings| settings.contact.friction = 0.05);
     if let Some([(expected, _), (state, _)]) = both(9, &crossing(|_| ()), other) {
+        let [touched, _] = apart([&expected, &state]);
+        assert!(touched > PLACE, "{touched} m");
+    }
+}
+
+#[test]
+fn parity_of_wet_pairs_sees_dry_ones() {
+    if let Some([(expected, _), (state, _)]) =
+        both(14, &crossing(|settings| settings.contact.pull = 0.05), crossing(|_| ()))
+    {
         let [touched, _] = apart([&expected, &state]);
         assert!(touched > PLACE, "{touched} m");
     }

@@ -908,6 +908,10 @@ class SimulationContact(TypedDict, total=False):
     sliding_friction: float
     """Coulomb coefficient of strands that slide, no more than `friction`. Allowed: 0 to 10."""
 
+    pull: float
+    """Force with which water or lacquer holds strands that touch before they part, over the length of the shorter of
+    both segments. It keeps strands where they are, and draws none closer. Allowed: 0 to 10 N/m."""
+
     rounds: int
     """Rounds of each part of a step in which strands and forces between them answer each other. A GPU takes at most
     1000 in a step. Allowed: 1 to 1000."""

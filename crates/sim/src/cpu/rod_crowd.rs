@@ -141,14 +141,14 @@ impl Crowd {
             if !gap.is_finite() || !(presses || gap < REMEMBERED * near.touch) {
                 continue;
             }
-            report.pairs += usize::from(presses);
+            report.pairs += usize::from(near.normal.dot(near.force) > 0.0);
             report.deepest = report.deepest.max(near.touch - gap);
             report.crossed += usize::from(gap < 0.0);
             pairs.push(Pair {
                 segments: near.segments,
                 normal: near.normal.to_array(),
                 force: near.force.to_array(),
-                gap,
+                gap: if near.pulls > 0.0 { near.held_at } else { gap },
                 slides: f32::from(u8::from(near.slides && slips)),
             });
         }

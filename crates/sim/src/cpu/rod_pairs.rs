@@ -13,6 +13,9 @@ const HELD: f32 = 1.0;
 const TAKEN_BACK: f32 = 0.3;
 const FASTEST_BACK: f32 = 0.1;
 
+/// Distance over that of touching up to which water or lacquer takes hold of two strands.
+const WETS: f32 = 1.05;
+
 /// Inverse mass of both places of a pair over the largest of their points, below which nothing moves them.
 const MOVES: f32 = 1e-6;
 
@@ -100,6 +103,9 @@ impl<'a> Look<'a> {
         let missing = touch - place.gap;
         let (force, slides) =
             pair.map_or((Vec3::ZERO, false), |pair| (turned(pair, place.normal), pair.slides > 0.0));
+        let is_held = place.gap < WETS * touch || place.normal.dot(force) < 0.0;
+        let pulls =
+            if is_held { self.hair.model.settings.contact.pull * self.shorter(segments) } else { 0.0 };
         Some(Near {
             segments,
             shares: place.shares,
@@ -112,16 +118,27 @@ impl<'a> Look<'a> {
             force,
             given: force,
             change: Vec3::ZERO,
+            pulls,
+            // Never closer than they touch, nor than where water took hold of them.
+            held_at: pair.map_or(place.gap, |pair| pair.gap).max(touch),
             slid: slides,
             slides,
         })
     }
 }
 
-/// Force of a pair that has turned to another normal: what pushes goes on to push.
+impl Look<'_> {
+    /// Length \[m\] of the shorter of two segments.
+    fn shorter(&self, segments: [u32; 2]) -> f32 {
+        let ([a, b, c, d], _) = Point::ends(self.points, segments);
+        a.distance(b).min(c.distance(d))
+    }
+}
+
+/// Force of a pair that has turned to another normal: what pushes goes on to push, what pulls to pull.
 fn turned(pair: &Pair, normal: Vec3) -> Vec3 {
     let (force, before) = (Vec3::from(pair.force), Vec3::from(pair.normal));
-    let push = before.dot(force).max(0.0);
+    let push = before.dot(force);
     let rubs = force - before * push;
     normal * push + (rubs - normal * normal.dot(rubs))
 }

@@ -236,7 +236,7 @@ impl Room {
             let mut pressed = self.pressed.to_array();
             for touch in &self.touches {
                 let (near, lane) = (&near[touch.pair as usize], touch.lane as usize);
-                pressed[lane] = pressed[lane].max(near.normal.dot(near.force));
+                pressed[lane] = pressed[lane].max(near.normal.dot(near.force).abs());
             }
             self.space.work.step.fill([f32x8::ZERO; 4]);
             Solved {

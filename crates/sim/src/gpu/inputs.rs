@@ -51,7 +51,8 @@ mirror! {
         /// Coulomb coefficients of strands that stick to each other, and of those that slide.
         pub sticks: f32,
         pub slides: f32,
-        pub unused_a: f32,
+        /// Force that holds strands together over the length of a segment \[N/m\].
+        pub pull: f32,
         pub unused_b: f32,
         pub unused_c: f32,
     }
@@ -146,6 +147,7 @@ impl RodStep {
             per_area: if shelters { per_area(model) } else { 1.0 },
             sticks: model.settings.contact.friction,
             slides: model.settings.contact.sliding_friction.min(model.settings.contact.friction),
+            pull: model.settings.contact.pull,
             ..Self::default()
         }
     }

@@ -20,7 +20,7 @@ pub struct Pair {
     pub normal: [f32; 3],
     /// Force on the first segment \[N\].
     pub force: [f32; 3],
-    /// Distance along the normal at the end of the part \[m\].
+    /// Distance along the normal \[m\]: at which both are held together, else at the end of the part.
     pub gap: f32,
     /// 1 for a pair that slides, 0 for one that sticks.
     pub slides: f32,
@@ -94,6 +94,9 @@ pub struct Near {
     /// Force that strands were given last, and its change since \[N\].
     pub given: Vec3,
     pub change: Vec3,
+    /// Most force \[N\] that holds both together, and the distance \[m\] along the normal at which it does.
+    pub pulls: f32,
+    pub held_at: f32,
     /// True for a pair that slid in the part before, and for one that slides now.
     pub slid: bool,
     pub slides: bool,
@@ -108,7 +111,7 @@ pub struct Friction {
 
 impl Near {
     /// A round: the force answers the relative way \[m\] of both places, by the augmented Lagrangian of contact and
-    /// Coulomb's law. Strands get the force with its change once more, as in alternating directions [Daviet2023].
+    /// Coulomb's law; what holds both together does not rub. Strands get the force with its change once more, as in alternating directions [Daviet2023].
     #[inline]
     pub fn answer(&mut self, way: Vec3, friction: Friction) {
         if !way.is_finite() {
@@ -118,10 +121,13 @@ impl Near {
         let along = self.normal.dot(way);
         let old = self.normal.dot(self.force);
         let push = (old * (1.0 - YIELDS) + self.stiffness * (self.needs - along)).max(0.0);
+        // Nothing yields where both are held together.
+        let pull = (old + self.stiffness * (self.held_at - self.gap - along)).clamp(-self.pulls, 0.0);
+        let push = if push > 0.0 { push } else { pull };
         let aside = way - self.normal * along;
         let held = self.force - self.normal * old - aside * self.stiffness;
         let size = held.length();
-        let limit = push * if self.slid { friction.slides } else { friction.sticks };
+        let limit = push.max(0.0) * if self.slid { friction.slides } else { friction.sticks };
         self.slides = size > limit;
         let rubs = if self.slides { held * (limit / size) } else { held };
         let force = self.normal * push + rubs;
@@ -149,6 +155,8 @@ mod tests {
             force: Vec3::ZERO,
             given: Vec3::ZERO,
             change: Vec3::ZERO,
+            pulls: 0.0,
+            held_at: 1e-3,
             slid: false,
             slides: false,
         };
