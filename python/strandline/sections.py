@@ -910,7 +910,7 @@ class SimulationContact(TypedDict, total=False):
 
     pull: float
     """Force with which water or lacquer holds strands that touch before they part, over the length of the shorter of
-    both segments. It keeps strands where they are, and draws none closer. Allowed: 0 to 10 N/m."""
+    both segments. It keeps strands where it takes hold of them, and draws none closer. Allowed: 0 to 10 N/m."""
 
     rounds: int
     """Rounds of each part of a step in which strands and forces between them answer each other. A GPU takes at most

@@ -33,7 +33,9 @@ impl State {
         };
         all(&mut self.positions, true);
         all(&mut self.previous_positions, true);
-        for turned in [&mut self.velocities, &mut self.corrections, &mut self.sections] {
+        for turned in
+            [&mut self.velocities, &mut self.corrections, &mut self.sections, &mut self.loads.forces]
+        {
             all(turned, false);
         }
         // Planes of solids on the head stay right only where all rides the head.

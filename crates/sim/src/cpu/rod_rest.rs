@@ -94,7 +94,9 @@ impl Motion {
             speed = speed.fast_max(before);
             longest = longest.fast_max(space.length[point]);
             whole += space.length[point];
-            pull = pull.fast_max(node.stretch * space.inverse_mass[point]);
+            if point + 1 < strands.nodes.len() {
+                pull = pull.fast_max(node.stretch * space.inverse_mass[point]);
+            }
             nothing += (square + before + angle) * f32x8::ZERO;
         }
         Self { largest, change, speed, turn, turn_change, longest, whole, pull, nothing }

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use strandline_base::{Stopwatch, par};
+use strandline_groom::Lanes;
 
 use super::Scratch;
 use super::advance::{NonFinite, advance};
@@ -77,8 +78,9 @@ impl CpuRunner {
         let scratch = self.scratch.get_or_insert_with(|| Scratch::new(model, state));
         scratch.refresh(model, state);
         model.give_sections(state);
-        if !model.settings.has_contact() {
+        if !model.settings.has_contact() && !state.pairs.is_empty() {
             state.pairs.clear();
+            state.tensions.fill(Lanes::default());
         }
         let (start, end) = (state.body.clone(), drive.body.clone());
         let time_step = model.settings.time_step;

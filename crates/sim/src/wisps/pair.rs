@@ -122,7 +122,7 @@ impl Near {
         let old = self.normal.dot(self.force);
         let push = (old * (1.0 - YIELDS) + self.stiffness * (self.needs - along)).max(0.0);
         // Nothing yields where both are held together.
-        let pull = (old + self.stiffness * (self.held_at - self.gap - along)).clamp(-self.pulls, 0.0);
+        let pull = (old + self.stiffness * (self.held_at - self.gap - along)).min(0.0).max(-self.pulls);
         let push = if push > 0.0 { push } else { pull };
         let aside = way - self.normal * along;
         let held = self.force - self.normal * old - aside * self.stiffness;

@@ -18,7 +18,7 @@ settings! {
         /// Coulomb coefficient of strands that slide, no more than `friction`.
         sliding_friction: f32 = 0.25, in [0.0, 10.0], slider [0.0, 1.0], more "locks that slide less far";
         /// Force with which water or lacquer holds strands that touch before they part, over the length of the shorter of both
-        /// segments. It keeps strands where they are, and draws none closer.
+        /// segments. It keeps strands where it takes hold of them, and draws none closer.
         pull: f32 = 0.0, in [0.0, 10.0] "N/m", slider [0.0, 0.1],
             more "wet or sprayed strands that hold together";
         /// Rounds of each part of a step in which strands and forces between them answer each other. A GPU takes at most 1000

@@ -6,7 +6,7 @@ use super::pull::Pull;
 use super::real::{Real, Vector};
 use super::rod::{Node, Work};
 
-/// Most of the least force that presses hard that is kept, a quarter more than Euler's load.
+/// Most of the least force that presses hard that is kept: of a light strand a quarter more than Euler's load.
 const MOST: f64 = 25.0;
 
 /// Of the same force what is not kept at all: it presses what cannot give way, such as a point beside a root.
@@ -30,13 +30,19 @@ impl<R: Real> Work<R> {
         let any = unsolved.choose(self.loaded.or_more(hard), R::of(0.0)).any_positive();
         if any {
             self.begin_tensions(rod, unsolved, hard);
-            let most = rod[0].stretch * R::of(MOST / INEXTENSIBLE);
-            for tension in &mut self.tensions {
-                *tension = self.calm.choose(tension.or_less(most).or_more(-most), *tension);
-            }
+            self.bound_tensions(rod, self.calm);
             self.loaded = unsolved.choose(self.calm, self.loaded);
         }
         any
+    }
+
+    /// Takes from the tensions of the strands with `which` above 0 what is more than they keep.
+    #[inline(always)]
+    pub(super) fn bound_tensions(&mut self, rod: &[Node<R>], which: R) {
+        let most = rod[0].stretch * R::of(MOST / INEXTENSIBLE);
+        for tension in &mut self.tensions {
+            *tension = which.choose(tension.or_less(most).or_more(-most), *tension);
+        }
     }
 
     /// The forces that solids have after a Newton step of the strands with `open` above 0: the next one begins with them

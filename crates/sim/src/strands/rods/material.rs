@@ -120,7 +120,7 @@ impl Material {
 /// are exact to a ten-thousandth before the last projection, and single precision carries it.
 pub(super) const INEXTENSIBLE: f64 = 1e4;
 
-/// w L^2 / (B / L^2): below, a strand that is clamped at its root stands upright [Greenhill1881], and a solid at its tip may
+/// w L / (B / L^2): below, a strand that is clamped at its root stands upright [Greenhill1881], and a solid at its tip may
 /// press it with more than its weight.
 const STANDS: f64 = 7.837;
 /// Stiffness of a solid's spring over that of such a strand along itself: it may not sink in before it bends.

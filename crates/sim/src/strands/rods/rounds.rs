@@ -65,7 +65,9 @@ impl<R: Real> Work<R> {
         self.sums.fill([R::of(0.0); UNKNOWNS]);
         let hard = self.pressed_hard(rod, pressed, first);
         let keeps = sound.choose(hard.choose(R::of(1.0), meets), R::of(0.0));
-        self.begin_tensions(rod, sound.choose(open, R::of(0.0)), keeps);
+        // Strands without pairs forget theirs as alone.
+        self.begin_tensions(rod, meets.choose(sound.choose(open, R::of(0.0)), open), keeps);
+        self.bound_tensions(rod, meets.choose(R::of(0.0), self.calm));
         let was_loaded = self.loaded;
         self.loaded = open.choose(hard.choose(self.calm, R::of(0.0)), was_loaded);
         let (turn, whole) = self.take_whole_step(open, sound);

@@ -116,7 +116,9 @@ impl Workspace {
             Some(avx) => avx.solve(&mut self.work, rod, &mut self.pulls, settings),
             None => self.work.solve(rod, &mut self.pulls, settings),
         };
-        self.take_loads();
+        if self.take_loads() {
+            self.forget_tensions(self.loaded);
+        }
         solved
     }
 
@@ -227,17 +229,22 @@ impl Workspace {
         }
     }
 
-    /// Takes over the forces of solids on strands that they press hard.
-    fn take_loads(&mut self) {
+    /// Takes over the forces of solids on strands that they press hard; one without any is not loaded any more. True if there was
+    /// a loaded one.
+    fn take_loads(&mut self) -> bool {
         let loaded = self.avx.as_ref().map_or(self.work.loaded, Avx::loaded);
         if !self.loaded.or_more(loaded).any_positive() {
-            return;
+            return false;
         }
-        self.loaded = loaded;
         self.loads.fill(Vector::zero());
+        let mut held = f32x8::ZERO;
         for pull in self.pulls.iter().filter(|pull| pull.one_sided) {
-            self.loads[pull.node] = pull.load * pull.stiffness;
+            let force = pull.load * pull.stiffness;
+            self.loads[pull.node] = force;
+            held = held.fast_max(force.x.abs().fast_max(force.y.abs()).fast_max(force.z.abs()));
         }
+        self.loaded = held.choose(loaded, f32x8::ZERO);
+        true
     }
 
     /// Sets the forces \[N\] with which a step begins of the strands with a bit in `lanes`.
@@ -253,7 +260,7 @@ impl Workspace {
         self.forget_tensions(self.loaded);
     }
 
-    /// Writes them, and returns the strands that have any. Those that are no number are none.
+    /// Writes them, and returns the strands that have any.
     pub fn store_loads(&self, lanes: u8, tensions: &mut [Lanes], forces: &mut [Vec3Lanes]) -> u8 {
         let loaded = self.loaded.simd_gt(f32x8::ZERO).to_bitmask() as u8;
         if lanes | loaded != 0 {
