@@ -28,7 +28,7 @@ fn slips_at(on: &On, friction: f32, most: f32) -> Option<f32> {
     settings.collision_margin = 0.0;
     let floor = Shape::capsule(vec3(-1.0, -1.0, 0.0), vec3(1.0, -1.0, 0.0), 1.0).unwrap();
     let floor = Collider::new(floor, Carrier::World, friction).unwrap();
-    // One segment more holds it; its tip is a hair's breadth above the floor.
+    // One segment more holds it; its tip is 10 um above the floor.
     let part = LENGTH / SEGMENTS as f32;
     let mut points = line(vec3(0.0, LENGTH + part + 1e-5, 0.0), Vec3::Y * 1e-5, SEGMENTS + 1);
     for point in &mut points[2..] {

@@ -106,8 +106,8 @@ impl Room {
         }
     }
 
-    /// Begins Newton's method, and finds how stiffly rounds hold the points. Strands without pairs forget their tension,
-    /// as strands alone have none: strands of the same block do not affect each other.
+    /// Begins Newton's method, and finds how stiffly rounds hold the points. Strands without pairs forget their tension
+    /// unless a solid presses them hard, as strands alone do: strands of the same block do not affect each other.
     pub(super) fn hold(&mut self, near: &[Near], hair: &Hair, block: usize, ways: &mut [Vec3Lanes]) {
         (self.open, self.pressed, self.whole) = (f32x8::of(1.0), f32x8::ZERO, f32x8::ZERO);
         let mut meets = [0.0; LANES];

@@ -43,7 +43,8 @@ const CALM: f64 = 0.1;
 const SMALL: f64 = 0.3;
 
 impl<R: Real> Work<R> {
-    /// A Newton step of the strands with `open` above 0, under the pushes. Those with `meets` above 0 keep tensions.
+    /// A Newton step of the strands with `open` above 0, under the pushes. Those with `meets` above 0 keep
+    /// tensions, and those that a solid presses hard.
     #[inline(always)]
     pub fn push(
         &mut self,
